@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace domewarp {
+
+/// The whole file. @throws Error(input) naming the file when it cannot be opened, is a folder, or cannot be read.
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
+
+/// Writes to a temporary name in the same folder, then renames, so that no half-written file is ever seen under `path`.
+/// @throws Error(output) naming the file; the temporary file is removed.
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+void write_file(const std::filesystem::path& path, std::string_view text);
+
+} // namespace domewarp

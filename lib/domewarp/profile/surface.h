@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "domewarp/core/vectors.h"
+
+namespace domewarp {
+
+enum class Lens { equidistant, equisolid, stereographic, orthographic };
+
+/// Which crossings of a view ray with a multi-valued curve are drawn.
+enum class BranchChoice { all, first };
+
+/// A display that is symmetric about its axis, as asked for. Exactly one of `curve`, `lens`, `profile` is given.
+struct SurfaceOptions {
+  std::string curve;             ///< z = f(r) as an expression in r
+  std::optional<Lens> lens;
+  double fov_deg = 180;          ///< full field of view of the lens; its edge falls on image radius 1
+  std::vector<Vec2> profile;     ///< measured rows (r, z), r strictly increasing from 0, shape-preserving cubic
+  std::string profile_name;      ///< file the rows came from, for messages
+  std::optional<double> rmax;    ///< image radius the user wants to see at most
+  std::optional<double> projector; ///< distance of the projector behind the eye, image units
+  BranchChoice branches = BranchChoice::all;
+};
+
+/// The image radius as a function of the view angle theta (0 forward, pi backward) with its derivatives.
+struct RadialJet {
+  double r = 0;                  ///< image radius R, after the projector's compensation
+  double dr = 0, d2r = 0;        ///< R', R'' with respect to theta
+};
+
+/// One monotone piece of R(theta): the directions theta_low..theta_high and the image radii they fill. R rises with
+/// theta where `orientation` is +1 and falls where it is -1 (h = f - r f' < 0; triangles there appear mirrored).
+struct Branch {
+  double theta_low = 0, theta_high = 0; ///< radians, theta_low < theta_high
+  double radius_low = 0, radius_high = 0; ///< image radii at theta_low and theta_high; low > high where falling
+  int orientation = 1;
+};
+
+/// What stopped the picture from growing beyond r_max.
+enum class RadiusLimit { user, screen, domain, fold, projector, lens };
+const char* to_string(RadiusLimit limit);
+
+/// A profile curve, lens or measured profile with its projector, analysed: everything about the display that the rest
+/// of the toolkit needs, as one radial function per branch. Immutable and safe to share between threads.
+/// Based on: sections (d), (e), (f) of the thesis' mathematics; theta(r) = atan2(r, f(r)), theta' = h / (r^2 + f^2).
+class Surface {
+public:
+  /// @param screen_radius image radius of the picture's corners (see scene/raster.h)
+  /// @throws Error(usage) when the expression does not parse (naming the column and what was expected), the surface
+  ///         shows nothing (nowhere defined, the eye on it, f(0) <= 0 with mixed signs of h), or a number is out of range.
+  Surface(const SurfaceOptions& options, double screen_radius);
+  ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
+
+  const SurfaceOptions& options() const;
+  double r_max() const;                  ///< largest image radius that shows anything (after compensation)
+  RadiusLimit r_max_limit() const;
+  const std::vector<Branch>& branches() const;
+
+  /// The direct method: R for the direction with sine `s` >= 0 and cosine `c` of theta (s^2 + c^2 = 1), by a bracketed,
+  /// safeguarded root of F(r) = f(r) s - r c (closed form for lenses), residual at double rounding. Directions
+  /// outside the branch give the radius at its nearer end.
+  double radius(std::size_t branch, double s, double c) const;
+
+  /// R, R', R'' at theta, clamped to the branch. Infinite slopes (fold) come back as the largest finite value.
+  RadialJet radial(std::size_t branch, double theta) const;
+
+  /// The tangent extension beyond r_max in homogeneous form (valid for vertical tangents): image radius for a direction
+  /// no branch contains, after compensation; nothing for a blind direction.
+  std::optional<double> extended_radius(double s, double c) const;
+
+  /// The inverse, for rays: sine and cosine of theta of the direction seen at an image radius (corrected Eq. 25
+  /// when there is a projector); nothing beyond r_max.
+  std::optional<Vec2> direction(double image_radius) const;
+
+  /// Index of the branch that image radius belongs to (0 for radii outside).
+  std::size_t branch_at(double image_radius) const;
+
+private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+} // namespace domewarp

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "domewarp/core/vectors.h"
+#include "domewarp/profile/surface.h"
+
+namespace domewarp {
+
+enum class Method { automatic, direct, table };
+
+enum class PointState { visible, extended, blind };
+const char* to_string(PointState state);
+
+/// An eye-space point on the image plane: x' = x K / rho, y' = y K / rho, depth = rho, K = R(theta) / sin(theta).
+struct ImagePoint {
+  double x = 0, y = 0;           ///< image units; nan for blind points
+  double depth = 0;              ///< rho = |p|
+  PointState state = PointState::visible;
+};
+
+/// The two functions of the view direction that warping needs.
+struct RadialFactors {
+  double k = 0;                  ///< K = R(theta) / sin(theta); R'(0) on the axis
+  double g = 1;                  ///< weight of perspective output, w = rho g: |R'(theta)|^(-1/2), kept within bounds
+};
+
+/// How one branch was tabulated.
+struct TableReport {
+  bool used = false;             ///< false: the direct method answers
+  int pieces = 0;
+  int degree = 0;
+  double max_error = 0;          ///< of R, image units, measured against the direct method
+  double build_ms = 0;
+};
+
+/// The map of one branch from eye space to the image in double precision; a pure function of the direction, so that
+/// equal positions give equal bits. Safe to share between threads.
+class BranchMap {
+public:
+  /// Weight bounds: g = (q^2)^(-1/4) with q = |R'| / mean slope blended so that q stays within [epsilon, 1/epsilon],
+  /// q^2 -> (q^2 + e^2) / (1 + q^2 e^2). Smooth, 1 where R' is constant.
+  static constexpr double weight_epsilon = 0.05;
+
+  BranchMap(const Surface& surface, std::size_t branch, Method method);
+  ~BranchMap();
+  BranchMap(BranchMap&&) noexcept;
+  BranchMap& operator=(BranchMap&&) noexcept;
+
+  const Branch& branch() const;
+
+  /// @param p eye space (looking along -z), finite and not zero; a direction outside the branch takes the factors
+  ///          of the branch's nearer end.
+  RadialFactors factors(const Vec3& p) const;
+
+  /// Image point of p by this branch: (x, y) K / rho.
+  Vec2 image(const Vec3& p) const;
+
+  /// Sines of theta minus the branch's ends, times |p|: > 0 inside (see clipping): {rho sin(theta - theta_low), rho
+  /// sin(theta_high - theta)}. The first is +rho when theta_low is 0, the second +rho when theta_high is pi.
+  Vec2 inside(const Vec3& p) const;
+
+  /// The weight with its first two derivatives in theta, for error bounds (not bit-equal to factors()).
+  Vec3 weight_jet(double theta) const;
+
+  const TableReport& table() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+/// All branches of a surface.
+struct ImageMap {
+  std::vector<BranchMap> branches;
+};
+ImageMap make_image_map(const Surface& surface, Method method);
+
+/// Where an eye-space point appears: on the first branch (nearest along the ray) that contains its direction, else by
+/// the tangent extension, else blind. This is what `domewarp project` prints.
+ImagePoint project(const Surface& surface, const ImageMap& map, const Vec3& p);
+
+/// Unit eye-space direction seen at an image point; false beyond r_max. This is `domewarp project --inverse`.
+bool unproject(const Surface& surface, const Vec2& image, Vec3& direction);
+
+} // namespace domewarp
