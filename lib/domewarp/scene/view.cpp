@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/scene/view.h"
 
+#include <algorithm>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 

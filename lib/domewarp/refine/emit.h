@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "domewarp/refine/levels.h"
+#include "domewarp/refine/refine.h"
+
+namespace domewarp {
+
+/// Appends one refined branch to `out`: primitives with warped float positions and interpolated attributes, on the
+/// mesh of their instance (out.meshes[i] belongs to scene.instances[i]). Faces outside the picture are dropped.
+/// @param orientation of the branch: -1 reverses the winding
+void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedMesh& refined, int orientation,
+          const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report);
+
+/// Adds what the finished edges of one branch tell: certified errors, and edges that are open without a reason.
+void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegion& region, const Raster& raster,
+                 RefineReport& report);
+
+/// The camera that shows the picture, from the depths that were written.
+Camera picture_camera(const Raster& raster, Projection projection, double smallest_depth, double largest_depth);
+
+} // namespace domewarp

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/refine/refine.h"
+
+#include <chrono>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "domewarp/core/errors.h"
+#include "domewarp/refine/emit.h"
+#include "domewarp/refine/levels.h"
+#include "domewarp/refine/soup.h"
+
+namespace domewarp {
+
+namespace {
+
+class Stopwatch {
+public:
+  /// Milliseconds since the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    start_ = now;
+    return ms;
+  }
+
+private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check(const RefineOptions& options) {
+  const auto positive = [](double value, const char* option) {
+    if (!(value > 0) || !std::isfinite(value))
+      throw Error(ErrorCode::usage, std::string(option) + ": must be a positive number, got " + std::to_string(value));
+  };
+  positive(options.tolerance_px, "--tolerance");
+  positive(options.depth_tolerance, "--depth-tolerance");
+  if (options.near != 0) positive(options.near, "--near");
+}
+
+double extent(const Soup& soup) {
+  double farthest = 0;
+  for (const SoupFace& face : soup.faces)
+    for (const std::uint32_t point : face.point) farthest = std::max(farthest, glm::length(soup.points[point]));
+  return farthest;
+}
+
+/// What is carried over as it is; meshes are filled in branch by branch.
+Scene empty_copy(const Scene& scene) {
+  Scene out;
+  out.name = scene.name;
+  out.materials = scene.materials;
+  out.textures = scene.textures;
+  out.images = scene.images;
+  out.samplers = scene.samplers;
+  out.copyright = scene.copyright;
+  for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
+    const Instance& instance = scene.instances[i];
+    out.meshes.push_back({scene.meshes[instance.mesh].name, {}});
+    out.instances.push_back({instance.name, i, Mat4(1)});
+  }
+  return out;
+}
+
+} // namespace
+
+Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+             const RefineOptions& options, RefineReport& report) {
+  check(options);
+  Stopwatch watch;
+  const Soup soup = make_soup(scene, view, {options.cull_back_faces});
+  report.triangles_in = soup.source_triangles;
+  report.degenerate = soup.degenerate_triangles;
+  report.back_faces = soup.back_faces;
+  report.t_junctions_in = soup.t_junctions;
+  report.open_edges_in = soup.open_edges;
+  report.near = options.near > 0 ? options.near : std::max(1e-5 * extent(soup), 1e-30);
+  report.soup_ms = watch.lap();
+
+  Scene out = empty_copy(scene);
+  OracleOptions oracle_options{options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
+  if (!options.subdivide) oracle_options.tolerance = oracle_options.depth_tolerance = 1e30;
+  for (std::size_t b = 0; b < map.branches.size(); ++b) {
+    const BranchMap& branch = map.branches[b];
+    const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options);
+    const RefinedMesh refined = refine_levels(soup, oracle, options.max_triangles);
+    report.levels = std::max(report.levels, refined.levels);
+    report.map_evaluations += refined.evaluations;
+    report.triangles_clipped += refined.clipped;
+    if (refined.stopped) report.limits_hit.push_back("max-triangles");
+    report.levels_ms += watch.lap();
+    emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
+    audit_edges(soup, refined, oracle.region(), raster, report);
+    report.emit_ms += watch.lap();
+  }
+  out.cameras = {picture_camera(raster, options.projection, report.smallest_depth, report.largest_depth)};
+  return out;
+}
+
+} // namespace domewarp

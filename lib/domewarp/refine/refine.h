@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "domewarp/profile/surface.h"
+#include "domewarp/refine/error_bound.h"
+#include "domewarp/scene/raster.h"
+#include "domewarp/scene/scene.h"
+#include "domewarp/scene/view.h"
+#include "domewarp/transform/image_map.h"
+
+namespace domewarp {
+
+struct RefineOptions {
+  double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
+  double depth_tolerance = 0.01;     ///< largest relative error of the interpolated depth, > 0
+  Projection projection = Projection::perspective;
+  double near = 0;                   ///< nothing nearer to the eye is drawn; 0: 1e-5 of the scene's extent
+  std::size_t max_triangles = 50'000'000; ///< refinement stops here and says so
+  bool source_attributes = false;    ///< adds _SOURCE_POSITION (eye space)
+  bool cull_back_faces = true;       ///< drop faces of single-sided materials that the eye sees from behind
+  bool subdivide = true;             ///< false: only clip (error as it comes)
+};
+
+struct RefineReport {
+  std::size_t triangles_in = 0;      ///< drawn by the source
+  std::size_t triangles_out = 0;
+  std::size_t triangles_clipped = 0; ///< pieces outside the visible cones or inside the near sphere
+  std::size_t triangles_off_picture = 0; ///< outside the image rectangle
+  std::size_t back_faces = 0;
+  std::size_t degenerate = 0;        ///< two corners at one position
+  std::size_t vertices = 0;
+  std::size_t map_evaluations = 0;
+  std::size_t levels = 0;            ///< of refinement, the deepest branch
+  double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn
+  double depth_error_max = 0;
+  std::size_t uncertified_edges = 0; ///< no finite bound exists there: judged by samples
+  std::size_t t_junctions_in = 0;    ///< of the source, mended
+  std::size_t t_junctions_out = 0;
+  std::size_t open_edges_in = 0;     ///< of the source
+  std::size_t open_edges = 0;        ///< drawn edges with one face that neither the source, the clip nor a culled face explains
+  double near = 0;
+  double smallest_depth = 0, largest_depth = 0; ///< of the depth coordinate written
+  std::vector<std::string> limits_hit;
+  double soup_ms = 0, levels_ms = 0, emit_ms = 0;
+};
+
+/// Splits every drawn triangle until the picture that a rasteriser draws from the warped vertices is nowhere farther
+/// than the tolerance from the exact one, clips it to what each branch of the surface shows, and warps it.
+///
+/// Why no cracks: an edge has one record for the whole scene, keyed by its two positions; whether, where and how it is
+/// split is a pure function of these (edge_oracle.h); the split point is stored once and every face uses it.
+///
+/// @return a scene of warped meshes in output space (perspective: w (x', y', -1); orthographic: (x', y', -depth)),
+///         one mesh and instance per drawn instance of the source, with the camera that shows the picture, materials,
+///         textures and images carried over. The same for any number of threads.
+/// @throws Error(usage) when a tolerance is not positive and finite
+Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+             const RefineOptions& options, RefineReport& report);
+
+} // namespace domewarp

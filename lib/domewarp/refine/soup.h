@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "domewarp/core/vectors.h"
+#include "domewarp/mesh/topology.h"
+#include "domewarp/scene/scene.h"
+#include "domewarp/scene/view.h"
+
+namespace domewarp {
+
+/// One primitive of one instance: the unit that keeps its material and attributes.
+struct Part {
+  int instance = 0;
+  int primitive = 0;            ///< within the instance's mesh
+  std::uint32_t first_wedge = 0; ///< wedge of the primitive's vertex 0
+};
+
+/// A face corner's attributes: a vertex of the source, or a blend of three earlier wedges of the same part.
+struct Wedge {
+  std::array<std::uint32_t, 3> parent{};
+  std::array<double, 3> weight{1, 0, 0};
+  std::uint32_t point = 0;
+  std::uint32_t part = 0;
+};
+
+struct SoupFace {
+  Triangle point;               ///< into Soup::points, counter-clockwise, all different
+  Triangle wedge;               ///< below wedge count: source vertices first, then Soup::extra_wedges
+  std::uint32_t part = 0;
+};
+
+/// Every triangle of a scene in eye space, welded: points are shared across seams, primitives, meshes and nodes.
+struct Soup {
+  std::vector<Part> parts;
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> wedge_point; ///< per source vertex
+  std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split
+  std::vector<SoupFace> faces;
+  Topology topology;                      ///< of `faces`
+  std::size_t source_triangles = 0;
+  std::size_t degenerate_triangles = 0;   ///< two corners at one position: dropped, they cover nothing
+  std::size_t back_faces = 0;             ///< dropped: single-sided and seen from behind
+  std::size_t open_edges = 0;             ///< of the source, T-junctions split
+  std::size_t t_junctions = 0;            ///< split, so that the warp does not open them
+  std::size_t edges_opened_by_culling = 0; ///< regular edges one of whose faces was dropped as a back face
+};
+
+struct SoupOptions {
+  bool cull_back_faces = true;
+};
+
+/// Deterministic; order of faces and wedges follows the scene.
+Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options);
+
+} // namespace domewarp
