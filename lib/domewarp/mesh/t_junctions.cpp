@@ -46,9 +46,9 @@ private:
   int axis_ = 0;
 };
 
-std::vector<std::uint32_t> ends_of_open_edges(const Topology& topology) {
+std::vector<std::uint32_t> ends_of_open_edges(const MeshTopology& topology) {
   std::vector<std::uint32_t> ids;
-  for (const Topology::Edge& edge : topology.edges)
+  for (const MeshTopology::Edge& edge : topology.edges)
     if (edge.faces == 1) ids.insert(ids.end(), {edge.a, edge.b});
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -59,11 +59,11 @@ double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), s
 
 } // namespace
 
-std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const Topology& topology, double tolerance) {
+std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const MeshTopology& topology, double tolerance) {
   const SortedPoints candidates(points, ends_of_open_edges(topology));
   std::vector<TJunction> found;
   for (std::uint32_t e = 0; e < topology.edges.size(); ++e) {
-    const Topology::Edge& edge = topology.edges[e];
+    const MeshTopology::Edge& edge = topology.edges[e];
     if (edge.faces != 1) continue;
     const Vec3 a = points[edge.a], b = points[edge.b], d = b - a;
     const double length = glm::length(d);

@@ -12,7 +12,7 @@ namespace domewarp {
 
 /// A point that lies inside an open edge of another face: invisible while the mesh is flat, a crack once it is warped.
 struct TJunction {
-  std::uint32_t edge = 0;  ///< index into Topology::edges, an open edge
+  std::uint32_t edge = 0;  ///< index into MeshTopology::edges, an open edge
   std::uint32_t point = 0;
   double t = 0;            ///< where on the edge, from Edge::a to Edge::b, in (0, 1)
 };
@@ -21,6 +21,6 @@ struct TJunction {
 /// @param tolerance largest distance from the edge, relative to the edge's length plus the size of its coordinates in
 ///                  float32 units in the last place: what a modeller's rounding leaves
 /// @return sorted by edge, then by t
-std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const Topology& topology, double tolerance = 1e-6);
+std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const MeshTopology& topology, double tolerance = 1e-6);
 
 } // namespace domewarp

@@ -58,7 +58,7 @@ struct Key {
 };
 
 /// Half-edge edges between the same two points become one record; only boundary edges can have such a twin.
-std::vector<std::uint32_t> join_edges(const Connectivity& connectivity, Topology& topology) {
+std::vector<std::uint32_t> join_edges(const Connectivity& connectivity, MeshTopology& topology) {
   const HalfEdges& mesh = connectivity.mesh;
   std::vector<std::uint32_t> record_of(mesh.n_edges(), none);
   std::vector<Key> boundary;
@@ -98,10 +98,10 @@ std::vector<std::uint32_t> join_edges(const Connectivity& connectivity, Topology
 
 } // namespace
 
-Topology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles) {
+MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles) {
   const Connectivity connectivity = connect(point_count, triangles);
   const HalfEdges& mesh = connectivity.mesh;
-  Topology topology;
+  MeshTopology topology;
   const std::vector<std::uint32_t> record_of = join_edges(connectivity, topology);
   topology.edges_of.resize(triangles.size());
   for (std::size_t f = 0; f < triangles.size(); ++f) {

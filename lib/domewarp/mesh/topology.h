@@ -12,7 +12,7 @@ namespace domewarp {
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// One record per geometric edge of a triangle soup, whatever the number of faces on it.
-struct Topology {
+struct MeshTopology {
   struct Edge {
     std::uint32_t a = 0, b = 0; ///< point ids, a < b
     std::uint32_t faces = 0;    ///< how many triangles use it: 1 open, 2 regular, more non-manifold
@@ -25,6 +25,6 @@ struct Topology {
 /// Edges of three or more faces, Moebius strips, bow-ties, mirrored and duplicate faces are fine: a face that a
 /// half-edge structure cannot take joins through points of its own, and edges between the same points share one record.
 /// @param point_count every id in `triangles` is below it
-Topology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles);
+MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles);
 
 } // namespace domewarp

@@ -39,29 +39,33 @@ struct Branch {
   double theta_low = 0, theta_high = 0; ///< radians, theta_low < theta_high
   double radius_low = 0, radius_high = 0; ///< image radii at theta_low and theta_high; low > high where falling
   int orientation = 1;
+  bool fold_low = false, fold_high = false; ///< the view angle turns at that end; R' is infinite unless it is a corner
 };
 
 /// What stopped the picture from growing beyond r_max.
 enum class RadiusLimit { user, screen, domain, fold, projector, lens };
 const char* to_string(RadiusLimit limit);
 
+struct SurfaceParts;
+
 /// A profile curve, lens or measured profile with its projector, analysed: everything about the display that the rest
-/// of the toolkit needs, as one radial function per branch. Immutable and safe to share between threads.
+/// of the toolkit needs, as one radial function per branch. Immutable, cheap to copy, safe to share between threads.
 /// Based on: sections (d), (e), (f) of the thesis' mathematics; theta(r) = atan2(r, f(r)), theta' = h / (r^2 + f^2).
 class Surface {
 public:
   /// @param screen_radius image radius of the picture's corners (see scene/raster.h)
   /// @throws Error(usage) when the expression does not parse (naming the column and what was expected), the surface
-  ///         shows nothing (nowhere defined, the eye on it, f(0) <= 0 with mixed signs of h), or a number is out of range.
+  ///         shows nothing (nowhere defined, the eye on it, f(0) <= 0 with mixed signs of h), it is too irregular to be
+  ///         analysed, or a number is out of range.
   Surface(const SurfaceOptions& options, double screen_radius);
-  ~Surface();
-  Surface(Surface&&) noexcept;
-  Surface& operator=(Surface&&) noexcept;
 
   const SurfaceOptions& options() const;
   double r_max() const;                  ///< largest image radius that shows anything (after compensation)
   RadiusLimit r_max_limit() const;
   const std::vector<Branch>& branches() const;
+  /// Angles inside the branch at which R is continuous but not smooth (kinks of the curve, joints of a measured
+  /// profile), ascending.
+  const std::vector<double>& joints(std::size_t branch) const;
 
   /// The direct method: R for the direction with sine `s` >= 0 and cosine `c` of theta (s^2 + c^2 = 1), by a bracketed,
   /// safeguarded root of F(r) = f(r) s - r c (closed form for lenses), residual at double rounding. Directions
@@ -82,9 +86,16 @@ public:
   /// Index of the branch that image radius belongs to (0 for radii outside).
   std::size_t branch_at(double image_radius) const;
 
+  /// The point (r, z) of the surface that is seen at an image radius (before the projector's compensation); nothing
+  /// beyond r_max.
+  std::optional<Vec2> meridian(double image_radius) const;
+
+  /// The directions that even the tangent extension leaves blind: from this angle to pi when the outermost branch
+  /// rises, from 0 to this angle when it falls.
+  double blind_from() const;
+
 private:
-  struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::shared_ptr<const SurfaceParts> parts_; ///< immutable, so copies share them
 };
 
 } // namespace domewarp

@@ -254,7 +254,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegi
     return false;
   };
   std::vector<float> errors;
-  Topology open;
+  MeshTopology open;
   for (std::size_t e = 0; e < faces.size(); ++e) {
     if (faces[e] == 0) continue;
     const RefinedEdge& edge = refined.edges[e];
@@ -263,7 +263,9 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegi
     report.uncertified_edges += !edge.certified;
     if (faces[e] != 1 || is_rim(edge)) continue;
     open.edges.push_back({edge.a, edge.b, 1});
-    report.open_edges += edge.source == RefinedEdge::none || soup.topology.edges[edge.source].faces != 1;
+    if (edge.source != RefinedEdge::none && soup.topology.edges[edge.source].faces == 1) continue;
+    ++report.open_edges;
+    report.max_gap_px = std::max(report.max_gap_px, 2 * edge.error / pixel_size(raster));
   }
   std::vector<Vec3> points(refined.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = refined.points[i].eye;

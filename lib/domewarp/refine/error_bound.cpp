@@ -84,7 +84,7 @@ struct Angles {
 /// Range of theta on the segment: its ends, and the only interior extremum if there is one.
 Angles angle_range(const Vec3& a, const Vec3& b) {
   const auto theta = [](const Vec3& p) { return std::atan2(std::hypot(p.x, p.y), -p.z); };
-  auto [low, high] = std::minmax(theta(a), theta(b));
+  auto [low, high] = std::minmax({theta(a), theta(b)});
   const Vec3 d = b - a;
   const double t = (a.z * glm::dot(a, d) - d.z * glm::dot(a, a)) / (d.z * glm::dot(a, d) - a.z * glm::dot(d, d));
   if (t > 0 && t < 1) {

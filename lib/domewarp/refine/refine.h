@@ -42,6 +42,7 @@ struct RefineReport {
   std::size_t t_junctions_out = 0;
   std::size_t open_edges_in = 0;     ///< of the source
   std::size_t open_edges = 0;        ///< drawn edges with one face that neither the source, the clip nor a culled face explains
+  double max_gap_px = 0;             ///< widest gap that such edges can show: twice their error bound
   double near = 0;
   double smallest_depth = 0, largest_depth = 0; ///< of the depth coordinate written
   std::vector<std::string> limits_hit;

@@ -62,7 +62,7 @@ void add_faces(const Scene& scene, Soup& soup) {
   }
 }
 
-Topology topology_of(const Soup& soup) {
+MeshTopology topology_of(const Soup& soup) {
   std::vector<Triangle> triangles(soup.faces.size());
   for (std::size_t f = 0; f < triangles.size(); ++f) triangles[f] = soup.faces[f].point;
   return build_topology(static_cast<std::uint32_t>(soup.points.size()), triangles);
@@ -164,7 +164,7 @@ Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options)
   add_faces(scene, soup);
   soup.topology = topology_of(soup);
   TJunctionSplitter(soup).run();
-  for (const Topology::Edge& edge : soup.topology.edges) soup.open_edges += edge.faces == 1;
+  for (const MeshTopology::Edge& edge : soup.topology.edges) soup.open_edges += edge.faces == 1;
   if (options.cull_back_faces) drop_back_faces(scene, soup);
   return soup;
 }

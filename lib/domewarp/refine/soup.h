@@ -41,7 +41,7 @@ struct Soup {
   std::vector<std::uint32_t> wedge_point; ///< per source vertex
   std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split
   std::vector<SoupFace> faces;
-  Topology topology;                      ///< of `faces`
+  MeshTopology topology;                      ///< of `faces`
   std::size_t source_triangles = 0;
   std::size_t degenerate_triangles = 0;   ///< two corners at one position: dropped, they cover nothing
   std::size_t back_faces = 0;             ///< dropped: single-sided and seen from behind

@@ -24,7 +24,7 @@ struct ImagePoint {
 
 /// The two functions of the view direction that warping needs.
 struct RadialFactors {
-  double k = 0;                  ///< K = R(theta) / sin(theta); R'(0) on the axis
+  double k = 0;                  ///< K = R(theta) / sin(theta); R'(0) on the axis; large but finite straight behind
   double g = 1;                  ///< weight of perspective output, w = rho g: |R'(theta)|^(-1/2), kept within bounds
 };
 
@@ -39,6 +39,7 @@ struct TableReport {
 
 /// The map of one branch from eye space to the image in double precision; a pure function of the direction, so that
 /// equal positions give equal bits. Safe to share between threads.
+/// Keeps what it needs of the surface, which need not outlive it.
 class BranchMap {
 public:
   /// Weight bounds: g = (q^2)^(-1/4) with q = |R'| / mean slope blended so that q stays within [epsilon, 1/epsilon],
@@ -56,7 +57,8 @@ public:
   ///          of the branch's nearer end.
   RadialFactors factors(const Vec3& p) const;
 
-  /// Image point of p by this branch: (x, y) K / rho.
+  /// Image point of p by this branch: (x, y) K / rho, up to rounding; a point straight behind, whose image is a circle,
+  /// falls on its x axis.
   Vec2 image(const Vec3& p) const;
 
   /// Sines of theta minus the branch's ends, times |p|: > 0 inside (see clipping): {rho sin(theta - theta_low), rho

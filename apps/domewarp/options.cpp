@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "domewarp/core/errors.h"
+#include "domewarp/profile/measured.h"
+
+namespace domewarp {
+
+double parse_number(const std::string& option, const std::string& text) {
+  double value = 0;
+  const char* first = text.data() + (!text.empty() && text[0] == '+');
+  const auto [end, status] = std::from_chars(first, text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw Error(ErrorCode::usage, option + ": needs a number, got '" + text + "'");
+  return value;
+}
+
+std::size_t parse_count(const std::string& option, const std::string& text) {
+  std::size_t value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size())
+    throw Error(ErrorCode::usage, option + ": needs a whole number, got '" + text + "'");
+  return value;
+}
+
+namespace {
+
+double parse_positive(const std::string& option, const std::string& text) {
+  const double value = parse_number(option, text);
+  if (!(value > 0)) throw Error(ErrorCode::usage, option + ": must be greater than 0, got " + text);
+  return value;
+}
+
+Vec3 parse_vector(const std::string& option, const std::string& text) {
+  Vec3 v;
+  std::size_t begin = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? text.find(',', begin) : text.size();
+    if (comma == std::string::npos) throw Error(ErrorCode::usage, option + ": needs three numbers X,Y,Z, got '" + text + "'");
+    v[i] = parse_number(option, text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return v;
+}
+
+Raster parse_size(const std::string& option, const std::string& text) {
+  const std::size_t x = text.find('x');
+  if (x == std::string::npos) throw Error(ErrorCode::usage, option + ": needs WIDTHxHEIGHT, got '" + text + "'");
+  const std::size_t width = parse_count(option, text.substr(0, x)), height = parse_count(option, text.substr(x + 1));
+  constexpr std::size_t largest = 65536;
+  if (width < 1 || height < 1 || width > largest || height > largest)
+    throw Error(ErrorCode::usage, option + ": each side must be from 1 to 65536 pixels, got '" + text + "'");
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+/// An option whose text is turned into a value while the line is parsed.
+CLI::Option* add(CLI::App& app, const char* name, const std::string& help, const char* type,
+                 std::function<void(const std::string&)> take) {
+  return app.add_option_function<std::string>(name, std::move(take), help)->type_name(type);
+}
+
+template <typename Value>
+CLI::Option* add_choice(CLI::App& app, const char* name, const std::string& help, std::map<std::string, Value> choices,
+                        std::function<void(Value)> take) {
+  std::string names;
+  for (const auto& [key, value] : choices) names += (names.empty() ? "" : "|") + key;
+  const std::string option = name;
+  return add(app, name, help, "", [=](const std::string& text) {
+           const auto found = choices.find(text);
+           if (found == choices.end()) throw Error(ErrorCode::usage, option + ": must be one of " + names + ", got '" + text + "'");
+           take(found->second);
+         })->type_name(names);
+}
+
+} // namespace
+
+void add_view_options(CLI::App& app, ViewOptions& view) {
+  auto* group = app.add_option_group("View");
+  const auto add_vector = [&](const char* name, const char* help, std::optional<Vec3>& out) {
+    add(*group, name, help, "X,Y,Z", [name, &out](const std::string& text) { out = parse_vector(name, text); });
+  };
+  add_vector("--eye", "Where the viewer is (default: the camera's place)", view.eye);
+  add_vector("--target", "A point on the principal axis", view.target);
+  add_vector("--forward", "Direction of the principal axis", view.forward);
+  add_vector("--up", "Up direction (default: +y)", view.up);
+  add(*group, "--camera", "A camera of the scene (default: its first; without any, an eye in front of the scene)", "NAME|INDEX",
+      [&view](const std::string& text) { view.camera = text; });
+}
+
+void add_surface_options(CLI::App& app, SurfaceOptions& surface) {
+  auto* group = app.add_option_group("Surface");
+  add(*group, "--curve", "Profile curve z = f(r), for example 1-r^2", "EXPR", [&surface](const std::string& text) {
+    if (text.empty()) throw Error(ErrorCode::usage, "--curve: is empty");
+    surface.curve = text;
+  });
+  add_choice<Lens>(*group, "--lens", "Lens preset; its field of view ends at image radius 1",
+                   {{"equidistant", Lens::equidistant}, {"equisolid", Lens::equisolid}, {"stereographic", Lens::stereographic}, {"orthographic", Lens::orthographic}},
+                   [&surface](Lens lens) { surface.lens = lens; });
+  add(*group, "--fov", "Full field of view of the lens, degrees (default 180)", "DEG",
+      [&surface](const std::string& text) { surface.fov_deg = parse_positive("--fov", text); });
+  add(*group, "--profile", "Measured profile: rows of 'r z'", "FILE", [&surface](const std::string& text) {
+    surface.profile = read_profile(text);
+    surface.profile_name = text;
+  });
+  add(*group, "--rmax", "Largest image radius to show (default: the picture's corners)", "R",
+      [&surface](const std::string& text) { surface.rmax = parse_positive("--rmax", text); });
+  add(*group, "--projector", "Distance of the projector behind the eye, image units", "D",
+      [&surface](const std::string& text) { surface.projector = parse_positive("--projector", text); });
+  add_choice<BranchChoice>(*group, "--branch", "Crossings of a multi-valued curve that are drawn (default all)",
+                           {{"all", BranchChoice::all}, {"first", BranchChoice::first}},
+                           [&surface](BranchChoice choice) { surface.branches = choice; });
+}
+
+void require_surface(const SurfaceOptions& surface) {
+  const int given = !surface.curve.empty() + surface.lens.has_value() + !surface.profile.empty();
+  if (given != 1) throw Error(ErrorCode::usage, "exactly one of --curve, --lens and --profile is needed, got " + std::to_string(given));
+}
+
+void add_raster_options(CLI::App& app, Raster& raster) {
+  add(app, "--size", "Size of the picture (default 4096x4096)", "WxH", [&raster](const std::string& text) { raster = parse_size("--size", text); });
+}
+
+void add_method_option(CLI::App& app, Method& method) {
+  add_choice<Method>(app, "--method", "How points are mapped (default auto)",
+                     {{"auto", Method::automatic}, {"direct", Method::direct}, {"lut", Method::table}}, [&method](Method m) { method = m; });
+}
+
+void add_quality_options(CLI::App& app, RefineOptions& refine) {
+  auto* group = app.add_option_group("Quality");
+  add(*group, "--tolerance", "Largest displacement of any drawn point, pixels (default 0.5)", "PX",
+      [&refine](const std::string& text) { refine.tolerance_px = parse_positive("--tolerance", text); });
+  add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.01)", "REL",
+      [&refine](const std::string& text) { refine.depth_tolerance = parse_positive("--depth-tolerance", text); });
+  add(*group, "--near", "Nothing nearer to the eye is drawn (default: 1e-5 of the scene's extent)", "D",
+      [&refine](const std::string& text) { refine.near = parse_positive("--near", text); });
+  add(*group, "--max-triangles", "Stop refinement there, say so and exit with 3 (default 50000000)", "N",
+      [&refine](const std::string& text) { refine.max_triangles = parse_count("--max-triangles", text); });
+  add_choice<bool>(*group, "--subdivide", "adaptive: as the tolerance needs; none: only clip (default adaptive)",
+                   {{"adaptive", true}, {"none", false}}, [&refine](bool subdivide) { refine.subdivide = subdivide; });
+  group->add_flag("!--keep-back-faces", refine.cull_back_faces, "Keep faces of single-sided materials that are seen from behind");
+}
+
+void add_output_options(CLI::App& app, ConvertOptions& options) {
+  auto* group = app.add_option_group("Output");
+  add_choice<Projection>(*group, "--projection", "Camera of the written file (default perspective)",
+                         {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
+                         [&options](Projection projection) { options.refine.projection = projection; });
+  group->add_flag("--unlit", options.unlit, "Mark every material KHR_materials_unlit");
+  group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");
+}
+
+} // namespace domewarp

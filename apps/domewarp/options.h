@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "domewarp/convert/convert.h"
+
+namespace CLI {
+class App;
+}
+
+namespace domewarp {
+
+/// A finite number, the whole text. @throws Error(usage) naming the option and the text.
+double parse_number(const std::string& option, const std::string& text);
+
+/// A whole number >= 0. @throws Error(usage)
+std::size_t parse_count(const std::string& option, const std::string& text);
+
+/// Each adds a group of options that several commands share. Bad values throw Error(usage) while the line is parsed.
+void add_view_options(CLI::App& app, ViewOptions& view);
+void add_surface_options(CLI::App& app, SurfaceOptions& surface);
+void add_raster_options(CLI::App& app, Raster& raster);
+void add_method_option(CLI::App& app, Method& method);
+void add_quality_options(CLI::App& app, RefineOptions& refine);
+void add_output_options(CLI::App& app, ConvertOptions& options);
+
+/// @throws Error(usage) unless exactly one of --curve, --lens and --profile was given
+void require_surface(const SurfaceOptions& surface);
+
+} // namespace domewarp

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "domewarp/profile/surface.h"
+#include "domewarp/refine/refine.h"
+#include "domewarp/scene/raster.h"
+#include "domewarp/scene/scene.h"
+#include "domewarp/scene/view.h"
+#include "domewarp/transform/image_map.h"
+
+namespace domewarp {
+
+/// Everything that decides what a conversion looks like.
+struct ConvertOptions {
+  ViewOptions view;
+  SurfaceOptions surface;
+  Raster raster;
+  Method method = Method::automatic;
+  RefineOptions refine;
+  bool unlit = false;           ///< mark every material KHR_materials_unlit
+};
+
+/// What a conversion did; `to_json` (report.h) is its written form.
+struct ConvertReport {
+  RefineReport refine;
+  View view;                    ///< as resolved
+  double r_max = 0;
+  RadiusLimit r_max_limit = RadiusLimit::screen;
+  std::vector<Branch> branches;
+  std::vector<TableReport> tables; ///< one per branch
+  std::vector<std::string> warnings;
+  std::vector<std::string> dropped_extensions;
+  double map_ms = 0;
+  double total_ms = 0;
+  double peak_memory_mb = 0;    ///< of the process so far
+};
+
+/// The whole job: a scene in, the pre-warped scene out, `Scene::extras` filled in so that the file says how it was made
+/// (record.h). A tolerance that could not be reached shows in report.refine.limits_hit and error_px_max.
+/// @throws Error(usage) for a view, surface, raster or tolerance that cannot work
+Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report);
+
+/// Whether the promise of the tolerance was kept.
+bool is_kept(const ConvertReport& report, const ConvertOptions& options);
+
+} // namespace domewarp

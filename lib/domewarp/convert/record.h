@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "domewarp/convert/convert.h"
+
+namespace domewarp {
+
+/// What a written file says of itself in asset.extras.domewarp: enough to draw the same picture again from the original
+/// scene. Holds nothing that differs from run to run.
+struct Record {
+  std::string version;
+  View view;
+  SurfaceOptions surface;
+  Raster raster;
+  Projection projection = Projection::perspective;
+  double tolerance_px = 0;
+  double near = 0;
+  bool unlit = false;
+  double error_px = 0;           ///< certified
+  std::size_t triangles_in = 0, triangles_out = 0, vertices = 0;
+};
+
+Record make_record(const ConvertOptions& options, const ConvertReport& report);
+
+/// JSON text; numbers survive to the last bit.
+std::string to_json(const Record& record);
+
+/// @param name of the file, for messages
+/// @throws Error(input) when the text is empty, no JSON, or lacks what a picture needs
+Record parse_record(const std::string& text, const std::string& name);
+
+} // namespace domewarp

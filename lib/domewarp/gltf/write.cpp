@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/gltf/write.h"
+
+#include <algorithm>
+#include <exception>
+#include <set>
+#include <system_error>
+
+#include "domewarp/core/errors.h"
+#include "domewarp/core/files.h"
+#include "domewarp/gltf/encode.h"
+#include "domewarp/gltf/image_format.h"
+#include "domewarp/gltf/uri.h"
+
+namespace domewarp {
+
+namespace fs = std::filesystem;
+
+namespace gltf {
+
+namespace {
+
+void append_word(std::vector<std::uint8_t>& bytes, std::size_t value) {
+  for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+template <typename Bytes>
+void append_chunk(std::vector<std::uint8_t>& file, std::size_t type, const Bytes& data, std::uint8_t padding) {
+  append_word(file, (data.size() + 3) / 4 * 4);
+  append_word(file, type);
+  file.insert(file.end(), data.begin(), data.end());
+  file.resize((file.size() + 3) / 4 * 4, padding);
+}
+
+std::vector<std::uint8_t> pack_glb(const EncodedScene& encoded) {
+  const std::size_t json = (encoded.json.size() + 3) / 4 * 4, binary = (encoded.binary.size() + 3) / 4 * 4;
+  const std::size_t length = 20 + json + (binary ? 8 + binary : 0);
+  if (length > UINT32_MAX)
+    throw Error(ErrorCode::output, "the scene needs " + std::to_string(length) + " bytes, a GLB can hold 4 GiB");
+  std::vector<std::uint8_t> file;
+  file.reserve(length);
+  append_word(file, 0x46546C67);
+  append_word(file, 2);
+  append_word(file, length);
+  append_chunk(file, 0x4E4F534A, encoded.json, ' ');
+  if (binary) append_chunk(file, 0x004E4942, encoded.binary, 0);
+  return file;
+}
+
+bool is_hidden(const fs::path& path) {
+  return std::any_of(path.begin(), path.end(), [](const fs::path& part) { return part.string().starts_with("."); });
+}
+
+/// Whether an image may be written where its source stood: below the folder of the file, under an image's name, and
+/// not over another file.
+bool may_keep_path(const fs::path& folder, const std::string& path, const Image& image) {
+  if (!stays_inside(path) || is_hidden(path) || fs::path(path).lexically_normal() != fs::path(path)) return false;
+  const std::string expected = file_extension(image.mime), extension = fs::path(path).extension().string();
+  if (extension != "." + expected && !(expected == "jpg" && extension == ".jpeg")) return false;
+  std::error_code status;
+  if (!fs::exists(folder / path, status)) return true;
+  if (!fs::is_regular_file(folder / path, status) || fs::file_size(folder / path, status) != image.bytes.size())
+    return false;
+  return read_file(folder / path) == image.bytes;
+}
+
+/// Chooses a path for every image, each at most once.
+class ImagePaths {
+ public:
+  ImagePaths(const Scene& scene, const fs::path& target) : scene_(scene), target_(target) {}
+
+  std::string operator()(std::size_t index) {
+    const Image& image = scene_.images[index];
+    const std::optional<std::string> kept = percent_decode(image.uri);
+    if (kept && may_keep_path(target_.parent_path(), *kept, image) && taken_.insert(*kept).second) return *kept;
+    const std::string path =
+        target_.stem().string() + ".image" + std::to_string(index) + "." + file_extension(image.mime);
+    taken_.insert(path);
+    return path;
+  }
+
+ private:
+  const Scene& scene_;
+  const fs::path& target_;
+  std::set<std::string> taken_;
+};
+
+void write_image(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
+  std::error_code status;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), status);
+  if (status) throw Error(ErrorCode::output, path.string() + ": its folder cannot be made: " + status.message());
+  write_file(path, bytes);
+}
+
+/// The .gltf goes last: who sees it, sees everything it refers to.
+void write_separate(const Scene& scene, const fs::path& path, const WriteOptions& options) {
+  const fs::path binary = fs::path(path).replace_extension(".bin");
+  ImagePaths paths(scene, path);
+  const Placement placement{percent_encode(binary.filename().string()),
+                            [&](std::size_t index) { return paths(index); }};
+  const EncodedScene encoded = encode_scene(scene, options, placement);
+  for (const ImageFile& image : encoded.images) write_image(path.parent_path() / image.path, *image.bytes);
+  if (!encoded.binary.empty()) write_file(binary, encoded.binary);
+  write_file(path, encoded.json);
+}
+
+} // namespace
+
+} // namespace gltf
+
+std::vector<std::uint8_t> encode_glb(const Scene& scene, const WriteOptions& options) {
+  return gltf::pack_glb(gltf::encode_scene(scene, options, {}));
+}
+
+void write_scene(const Scene& scene, const fs::path& path, const WriteOptions& options) {
+  const std::string extension = path.extension().string();
+  if (extension != ".glb" && extension != ".gltf")
+    throw Error(ErrorCode::usage, path.string() + ": the name must end in .glb or .gltf");
+  try {
+    if (extension == ".gltf")
+      gltf::write_separate(scene, path, options);
+    else
+      write_file(path, encode_glb(scene, options));
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (error.code() != ErrorCode::output || message.starts_with(path.string())) throw;
+    throw Error(ErrorCode::output, path.string() + ": " + message);
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::output, path.string() + ": cannot be written: " + error.what());
+  }
+}
+
+} // namespace domewarp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/profile/jet.h"
+
+namespace domewarp {
+
+double power(double x, int exponent) {
+  switch (exponent) {
+  case 1: return x;
+  case 2: return x * x;
+  case 3: return x * x * x;
+  default: return std::pow(x, exponent);
+  }
+}
+
+Jet<double> abs(const Jet<double>& u) { return u.v < 0 ? -u : u; }
+
+Jet<Interval> abs(const Jet<Interval>& u) {
+  if (u.v.lo >= 0) return u;
+  if (u.v.hi <= 0) return -u;
+  return {abs(u.v), hull(u.d, -u.d), entire(Regularity::continuous)};
+}
+
+Jet<double> max(const Jet<double>& a, const Jet<double>& b) {
+  if (std::isnan(a.v) || std::isnan(b.v)) return a + b;
+  return a.v > b.v ? a : b;
+}
+
+Jet<Interval> max(const Jet<Interval>& a, const Jet<Interval>& b) {
+  const Interval value = max(a.v, b.v);
+  if (a.v.lo >= b.v.hi) return {value, a.d, a.dd};
+  if (b.v.lo >= a.v.hi) return {value, b.d, b.dd};
+  return {value, hull(a.d, b.d), entire(Regularity::continuous)};
+}
+
+} // namespace domewarp

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/profile/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "domewarp/profile/root.h"
+#include "domewarp/profile/surface_parts.h"
+
+namespace domewarp {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vec2 unit(double r, double z) {
+  const double length = std::hypot(r, z);
+  return {r / length, z / length};
+}
+
+} // namespace
+
+const char* to_string(RadiusLimit limit) {
+  switch (limit) {
+  case RadiusLimit::user: return "user";
+  case RadiusLimit::screen: return "screen";
+  case RadiusLimit::domain: return "domain";
+  case RadiusLimit::fold: return "fold";
+  case RadiusLimit::projector: return "projector";
+  default: return "lens";
+  }
+}
+
+const SurfaceOptions& Surface::options() const { return parts_->options; }
+double Surface::r_max() const { return parts_->r_max; }
+RadiusLimit Surface::r_max_limit() const { return parts_->limit; }
+const std::vector<Branch>& Surface::branches() const { return parts_->branches; }
+const std::vector<double>& Surface::joints(std::size_t branch) const { return parts_->joints[branch]; }
+
+double Surface::radius(std::size_t branch, double s, double c) const {
+  const Branch& range = parts_->branches[branch];
+  if (!parts_->lens) {
+    const Vec2 point = curve_point(parts_->curve, parts_->spans[branch], s, c);
+    return compensate(parts_->distance, point.x, point.y);
+  }
+  if (s * std::cos(range.theta_high) >= c * std::sin(range.theta_high)) return range.radius_high;
+  const double r = domewarp::radius(*parts_->lens, s, c);
+  const double z = std::isinf(parts_->distance) ? 0 : depth(*parts_->lens, std::atan2(s, c)).r;
+  return compensate(parts_->distance, r, z);
+}
+
+RadialJet Surface::radial(std::size_t branch, double theta) const {
+  const Branch& range = parts_->branches[branch];
+  const Span& span = parts_->spans[branch];
+  theta = std::clamp(theta, range.theta_low, range.theta_high);
+  if (parts_->lens) return compensate(parts_->distance, lens_meridian(*parts_->lens, theta));
+  const Vec2 point = theta == span.theta_at_low    ? Vec2(span.r_low, span.z_low)
+                     : theta == span.theta_at_high ? Vec2(span.r_high, span.z_high)
+                                                   : curve_point(parts_->curve, span, std::sin(theta), std::cos(theta));
+  return compensate(parts_->distance, curve_meridian(parts_->curve, span, theta, point));
+}
+
+std::optional<double> Surface::extended_radius(double s, double c) const {
+  const auto& [point, tangent] = parts_->rim;
+  const double moment = point.y * tangent.x - point.x * tangent.y;
+  const double slant = c * tangent.x - s * tangent.y;
+  if (!(moment * slant > 0)) return std::nullopt;
+  const double r = s * (moment / slant), z = c * (moment / slant);
+  if (!(r >= point.x * (1 - 1e-12)) || !(z + parts_->distance > 0)) return std::nullopt;
+  const double image = std::max(compensate(parts_->distance, r, z), parts_->r_max);
+  return std::isfinite(image) ? std::optional(image) : std::nullopt;
+}
+
+double Surface::blind_from() const {
+  const auto& [point, tangent] = parts_->rim;
+  const Branch& last = parts_->branches.back();
+  const bool rises = last.orientation > 0;
+  if (tangent.x == 0 && tangent.y == 0) return rises ? last.theta_high : last.theta_low;
+  const double end = std::atan2(tangent.x, tangent.y);
+  if (!rises || std::isinf(parts_->distance) || tangent.y >= 0) return end;
+  const double r = point.x + (-parts_->distance - point.y) * tangent.x / tangent.y;
+  return std::min(end, std::atan2(r, -parts_->distance));
+}
+
+std::optional<Vec2> Surface::meridian(double image_radius) const {
+  if (!(image_radius >= 0 && image_radius <= parts_->r_max)) return std::nullopt;
+  const Span& first = parts_->spans.front();
+  const Span& last = parts_->spans.back();
+  const double d = parts_->distance;
+  if (parts_->lens) {
+    const Vec2 way = *direction(image_radius);
+    const double theta = std::atan2(way.x, way.y);
+    const MeridianJet m = lens_meridian(*parts_->lens, theta);
+    return Vec2{m.r.r, m.z.r};
+  }
+  if (std::isinf(d)) return Vec2{image_radius, evaluate(parts_->curve, image_radius)};
+  if (image_radius == 0) return Vec2{0, first.z_low};
+  if (image_radius == parts_->r_max) return Vec2{last.r_high, last.z_high};
+  // Eq. 24 in homogeneous form: the ray from the projector through the image point meets the curve.
+  const auto function = [&](double r) {
+    const Jet<double> f = differentiate(parts_->curve, r);
+    return ValueAndSlope{r * d - image_radius * (f.v + d), d - image_radius * f.d};
+  };
+  const double guess = last.r_high * image_radius / parts_->r_max;
+  const double r = find_root(function, first.r_low, last.r_high, guess, -1);
+  const Jet<double> f = differentiate(parts_->curve, r);
+  // Near a vertical tangent f(r) magnifies the rounding of r; the projector's ray knows z as well.
+  const bool steep = !(std::abs(f.d) * r < d);
+  return Vec2{r, steep ? d * ((r - image_radius) / image_radius) : f.v};
+}
+
+std::optional<Vec2> Surface::direction(double image_radius) const {
+  if (!(image_radius >= 0 && image_radius <= parts_->r_max)) return std::nullopt;
+  if (!parts_->lens) {
+    const Vec2 point = *meridian(image_radius);
+    return unit(point.x, point.y);
+  }
+  double theta = 0;
+  const Branch& range = parts_->branches.front();
+  if (image_radius == parts_->r_max) {
+    theta = range.theta_high;
+  } else if (std::isinf(parts_->distance)) {
+    theta = angle(*parts_->lens, image_radius);
+  } else if (image_radius > 0) {
+    const auto function = [&](double t) {
+      const RadialJet jet = compensate(parts_->distance, lens_meridian(*parts_->lens, t));
+      return ValueAndSlope{jet.r - image_radius, jet.dr};
+    };
+    theta = find_root(function, 0, range.theta_high, range.theta_high * image_radius / parts_->r_max, -1);
+  }
+  return Vec2{std::sin(theta), theta == 0.5 * pi ? 0 : std::cos(theta)};
+}
+
+std::size_t Surface::branch_at(double image_radius) const {
+  for (std::size_t i = 0; i < parts_->branches.size(); ++i) {
+    const auto [least, most] = std::minmax(parts_->branches[i].radius_low, parts_->branches[i].radius_high);
+    if (image_radius >= least && image_radius <= most) return i;
+  }
+  return 0;
+}
+
+} // namespace domewarp

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "domewarp/profile/analysis.h"
+#include "domewarp/profile/refuse.h"
+#include "domewarp/profile/surface_parts.h"
+
+namespace domewarp {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Limit {
+  double radius;
+  RadiusLimit reason;
+};
+
+void require_positive(const char* option, double value) {
+  if (value > 0 && std::isfinite(value)) return;
+  refuse(option, "must be greater than 0 and finite, got " + to_text(value));
+}
+
+void check(const SurfaceOptions& options, double screen_radius) {
+  const int given = int(!options.curve.empty()) + int(options.lens.has_value()) + int(!options.profile.empty());
+  if (given == 0) refuse("--curve", "one of --curve, --lens and --profile is needed, and an empty curve is none");
+  if (given > 1) refuse("--curve", "only one of --curve, --lens and --profile can be given");
+  if (options.rmax) require_positive("--rmax", *options.rmax);
+  if (options.projector) require_positive("--projector", *options.projector);
+  require_positive("--size", screen_radius);
+}
+
+Limit picture_limit(const SurfaceOptions& options, double screen_radius) {
+  if (options.rmax && *options.rmax < screen_radius) return {*options.rmax, RadiusLimit::user};
+  return {screen_radius, RadiusLimit::screen};
+}
+
+// The curve is followed that many times further out than the picture reaches, before compensation.
+constexpr double reach = 1024;
+
+const char* source(const SurfaceOptions& options) { return options.profile.empty() ? "--curve" : "--profile"; }
+
+// The ends of the last pair of neighbouring numbers in [0, hi] of which only the upper one `exceeds`.
+template <typename Predicate>
+std::pair<double, double> bisect(const Predicate& exceeds, double hi) {
+  double lo = 0;
+  for (double middle = 0.5 * hi; middle > lo && middle < hi; middle = lo + 0.5 * (hi - lo))
+    (exceeds(middle) ? hi : lo) = middle;
+  return {lo, hi};
+}
+
+// How far along the curve the picture goes; `picture` is in image units, the result in the curve's.
+Limit trace_limit(const Curve& curve, double distance, const Limit& picture) {
+  const bool compensated = std::isfinite(distance);
+  double window = picture.radius;
+  for (;; window *= 4) {
+    double end = find_domain_end(curve, window);
+    RadiusLimit reason = end < window ? RadiusLimit::domain : picture.reason;
+    if (!compensated) return {end, reason};
+    const std::vector<double> turns = find_folds(curve, end, distance);
+    if (!turns.empty()) {
+      end = turns.front();
+      reason = RadiusLimit::projector;
+    }
+    // True where the compensated radius exceeds the picture's, also behind its pole at f = -distance.
+    const auto exceeds = [&](double r) { return r * distance >= picture.radius * (evaluate(curve, r) + distance); };
+    if (exceeds(end)) return {bisect(exceeds, end).first, picture.reason};
+    if (reason != picture.reason) return {end, reason};
+    if (window > reach * picture.radius) return {end, RadiusLimit::projector};
+  }
+}
+
+void check_start(const SurfaceParts& parts) {
+  const double start = evaluate(parts.curve, 0);
+  if (std::abs(start) <= 1e-12)
+    refuse(source(parts.options), "f(0) = " + to_text(start) + " puts the eye on the surface");
+  if (start + parts.distance <= 0)
+    refuse("--projector",
+           "the surface starts at z = " + to_text(start) + ", behind the projector at " + to_text(-parts.distance));
+}
+
+Branch make_branch(const Span& span, double distance) {
+  Branch branch{span.theta_at_low, span.theta_at_high, compensate(distance, span.r_low, span.z_low),
+                compensate(distance, span.r_high, span.z_high), span.orientation};
+  if (span.orientation < 0) {
+    std::swap(branch.theta_low, branch.theta_high);
+    std::swap(branch.radius_low, branch.radius_high);
+  }
+  return branch;
+}
+
+double angle_of(const Curve& curve, double r) { return std::atan2(r, evaluate(curve, r)); }
+
+Span make_span(const Curve& curve, double a, double b) {
+  Span span{a, b, evaluate(curve, a), evaluate(curve, b), angle_of(curve, a), angle_of(curve, b), 1};
+  if (span.theta_at_high < span.theta_at_low) span.orientation = -1;
+  return span;
+}
+
+std::vector<double> joint_angles(const Curve& curve, const std::vector<double>& kinks, const Span& span) {
+  std::vector<double> angles;
+  for (const double kink : kinks)
+    if (kink > span.r_low && kink < span.r_high) angles.push_back(angle_of(curve, kink));
+  std::sort(angles.begin(), angles.end());
+  return angles;
+}
+
+// One branch for each stretch between folds; stretches too short to hold a direction are dropped.
+void add_branches(SurfaceParts& parts, const std::vector<double>& ends, const std::vector<double>& kinks) {
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const Span span = make_span(parts.curve, ends[i], ends[i + 1]);
+    if (std::abs(span.theta_at_high - span.theta_at_low) < 1e-12) continue;
+    Branch branch = make_branch(span, parts.distance);
+    const bool inner = i > 0, outer = i + 2 < ends.size() || parts.limit == RadiusLimit::fold;
+    branch.fold_low = span.orientation > 0 ? inner : outer;
+    branch.fold_high = span.orientation > 0 ? outer : inner;
+    parts.spans.push_back(span);
+    parts.branches.push_back(branch);
+    parts.joints.push_back(joint_angles(parts.curve, kinks, span));
+  }
+  if (parts.branches.empty())
+    refuse(source(parts.options), "the surface shows nothing within an image radius of " + to_text(parts.r_max));
+}
+
+Rim curve_rim(const SurfaceParts& parts) {
+  const Span& last = parts.spans.back();
+  const Branch& branch = parts.branches.back();
+  const Vec2 point(last.r_high, last.z_high);
+  if (last.orientation > 0 ? branch.fold_high : branch.fold_low) return {point, {0, 0}};
+  double slope = differentiate(parts.curve, last.r_high).d;
+  if (std::isnan(slope)) slope = differentiate(parts.curve, last.r_high * (1 - 1e-12)).d;
+  // A finite slope this large is the rounding of the point where the tangent is vertical.
+  if (std::abs(slope) > 1e7) return {point, {0, slope > 0 ? 1 : -1}};
+  const double length = std::hypot(1, slope);
+  return {point, {1 / length, slope / length}};
+}
+
+// Whether a corner of the curve is a fold as well.
+bool is_among(const std::vector<double>& folds, double r, double tolerance) {
+  return std::any_of(folds.begin(), folds.end(), [&](double fold) { return std::abs(fold - r) <= tolerance; });
+}
+
+void build_curve(SurfaceParts& parts, const Limit& picture) {
+  const SurfaceOptions& options = parts.options;
+  parts.curve = options.profile.empty() ? make_curve(options.curve) : make_curve(options.profile, options.profile_name);
+  check_start(parts);
+  const Limit traced = trace_limit(parts.curve, parts.distance, picture);
+  double end = traced.radius;
+  RadiusLimit reason = traced.reason;
+  if (!(end > 0)) refuse(source(options), "f(r) is not defined beyond r = 0");
+  std::vector<double> folds = find_folds(parts.curve, end, 0);
+  if (!folds.empty() && evaluate(parts.curve, 0) < 0)
+    refuse(source(options), "f(0) = " + to_text(evaluate(parts.curve, 0)) +
+                                " is behind the eye and the view angle turns at r = " + to_text(folds.front()));
+  if (!folds.empty() && options.branches == BranchChoice::first) {
+    end = folds.front();
+    reason = RadiusLimit::fold;
+    folds.clear();
+  }
+  parts.limit = reason;
+  const bool by_picture = reason == picture.reason;
+  parts.r_max = by_picture ? picture.radius : compensate(parts.distance, end, evaluate(parts.curve, end));
+  std::vector<double> kinks = find_kinks(parts.curve, end);
+  std::erase_if(kinks, [&](double r) { return is_among(folds, r, 1e-12 * end); });
+  folds.insert(folds.begin(), 0);
+  folds.push_back(end);
+  add_branches(parts, folds, kinks);
+  // The same number, whichever way it was rounded.
+  Branch& last = parts.branches.back();
+  if (parts.spans.back().r_high == end) (last.orientation > 0 ? last.radius_high : last.radius_low) = parts.r_max;
+  parts.rim = curve_rim(parts);
+}
+
+// The compensated radius rises with theta up to its pole: every lens's z falls as theta grows.
+double lens_end(const LensForm& lens, double distance, double picture_radius) {
+  const auto exceeds = [&](double theta) {
+    const MeridianJet m = lens_meridian(lens, theta);
+    return std::isinf(distance) ? m.r.r >= picture_radius : m.r.r * distance >= picture_radius * (m.z.r + distance);
+  };
+  return exceeds(lens.half_fov) ? bisect(exceeds, lens.half_fov).second : lens.half_fov;
+}
+
+void build_lens(SurfaceParts& parts, const Limit& picture) {
+  parts.lens = make_lens(*parts.options.lens, parts.options.fov_deg);
+  const double end = lens_end(*parts.lens, parts.distance, picture.radius);
+  const bool whole = end == parts.lens->half_fov;
+  parts.limit = whole ? RadiusLimit::lens : picture.reason;
+  const MeridianJet m = lens_meridian(*parts.lens, end);
+  parts.r_max = !whole ? picture.radius : std::isinf(parts.distance) ? 1 : compensate(parts.distance, m.r.r, m.z.r);
+  parts.branches = {{0, end, 0, parts.r_max, 1}};
+  parts.spans = {{0, m.r.r, 0, m.z.r, 0, end, 1}};
+  parts.joints = {{}};
+  const double length = std::hypot(m.r.dr, m.z.dr);
+  parts.rim = {{m.r.r, m.z.r}, {m.r.dr / length, m.z.dr / length}};
+}
+
+} // namespace
+
+Surface::Surface(const SurfaceOptions& options, double screen_radius) {
+  check(options, screen_radius);
+  const auto parts = std::make_shared<SurfaceParts>();
+  parts->options = options;
+  parts->distance = options.projector.value_or(infinity);
+  const Limit picture = picture_limit(options, screen_radius);
+  options.lens ? build_lens(*parts, picture) : build_curve(*parts, picture);
+  parts_ = parts;
+}
+
+} // namespace domewarp

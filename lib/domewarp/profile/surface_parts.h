@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "domewarp/profile/curve.h"
+#include "domewarp/profile/lens.h"
+#include "domewarp/profile/surface.h"
+
+namespace domewarp {
+
+/// The part of the profile curve that makes one branch. For lenses only the angles count.
+struct Span {
+  double r_low = 0, r_high = 0; ///< along the curve, ascending
+  double z_low = 0, z_high = 0;
+  double theta_at_low = 0, theta_at_high = 0;
+  int orientation = 1;
+};
+
+/// The surface's last point with the direction in which it goes on, for the tangent extension.
+struct Rim {
+  Vec2 point{0, 0};   ///< (r, z)
+  Vec2 tangent{0, 0}; ///< unit, outwards; zero where the last ray touches the curve
+};
+
+/// What a Surface consists of.
+struct SurfaceParts {
+  SurfaceOptions options;
+  std::optional<LensForm> lens;
+  Curve curve;
+  double distance = 0; ///< of the projector; infinite without one
+  double r_max = 0;
+  RadiusLimit limit = RadiusLimit::screen;
+  std::vector<Branch> branches;
+  std::vector<Span> spans;
+  std::vector<std::vector<double>> joints;
+  Rim rim;
+};
+
+/// R and z along the branch, before the projector's compensation, with derivatives in theta.
+struct MeridianJet {
+  RadialJet r, z;
+};
+
+/// Image radius at which the projector shows the point (r, z) of the surface.
+double compensate(double distance, double r, double z);
+RadialJet compensate(double distance, const MeridianJet& meridian);
+
+/// @param point on the curve, at the angle theta.
+MeridianJet curve_meridian(const Curve& curve, const Span& span, double theta, const Vec2& point);
+MeridianJet lens_meridian(const LensForm& lens, double theta);
+
+/// The point (r, z) at which the direction with sine s and cosine c meets the span, its nearer end if it does not.
+Vec2 curve_point(const Curve& curve, const Span& span, double s, double c);
+
+} // namespace domewarp

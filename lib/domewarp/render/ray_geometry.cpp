@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Embree works in float32 and its choice among hits near an edge depends on the instruction set. Here it gets triangles
+// that are slightly too large, so that it proposes every triangle the exact test could accept, and a filter function
+// decides in double precision. The filter keeps the best hit itself and leaves Embree's ray a little longer than
+// that, so that an equally near triangle is still proposed.
+#include "domewarp/render/ray_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <embree3/rtcore.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "domewarp/core/errors.h"
+#include "domewarp/core/parallel.h"
+#include "domewarp/render/shading.h"
+
+namespace domewarp {
+
+namespace {
+
+/// How far edges are moved outwards in their plane, relative to the largest coordinate. Embree's float32 edge test errs
+/// by about 2e-7 of that; a plane seen at a slant of 1:150 still leaves the margin needed.
+constexpr double inflation = 3e-5;
+constexpr double longest_mitre = 1000;
+
+/// Largest coordinate of the geometry given to Embree, so that products of three stay far from float32's limits.
+constexpr int largest_exponent = 30;
+
+struct DeviceDeleter {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+using RayScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
+
+bool is_finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+double largest(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// The corners of a triangle whose edges have moved outwards by `margin`; NaN (never hit) for one without area.
+void inflate(const Vec3 (&v)[3], double margin, Vec3 (&out)[3]) {
+  const Vec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
+  const double area = glm::length(normal);
+  Vec3 outward[3];
+  for (int i = 0; i < 3; ++i) outward[i] = glm::normalize(glm::cross(v[(i + 1) % 3] - v[i], normal / area));
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& a = outward[i];
+    const Vec3& b = outward[(i + 2) % 3];
+    const double mitre = 1 / std::max(1 + glm::dot(a, b), 2 / (longest_mitre * longest_mitre));
+    out[i] = v[i] + margin * mitre * (a + b);
+  }
+}
+
+/// The nearness that ties are judged by: 2^-44 of the distance is coarser than the rounding of `intersect` for all but
+/// grazing triangles, and finer than anything a picture shows.
+double rounded_distance(double distance) {
+  int exponent = 0;
+  const double mantissa = std::frexp(distance, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
+}
+
+struct Crossing {
+  double distance = 0;
+  double det = 0; ///< direction . (unnormalised normal): negative when the ray meets the front
+  double weights[3] = {};
+  double slack = 0; ///< relative error that float32 may make in the distance
+};
+
+/// Signed volumes decide. cross(a, b) and cross(b, a) are exact negatives, so two triangles with a common edge agree
+/// about the side a ray passes on, and none slips between them. A ray exactly on the edge hits both.
+bool intersect(const Vec3& d, const Vec3& v0, const Vec3& v1, const Vec3& v2, Crossing& crossing) {
+  const Vec3 c0 = glm::cross(v1, v2), c1 = glm::cross(v2, v0), c2 = glm::cross(v0, v1);
+  const double w0 = glm::dot(d, c0), w1 = glm::dot(d, c1), w2 = glm::dot(d, c2);
+  if (!((w0 >= 0 && w1 >= 0 && w2 >= 0) || (w0 <= 0 && w1 <= 0 && w2 <= 0))) return false;
+  const double det = w0 + w1 + w2;
+  const double volume = glm::dot(v0, c0);
+  const double distance = volume / det;
+  if (!(distance > 0) || !std::isfinite(distance)) return false;
+  crossing = {distance, det, {w0 / det, w1 / det, w2 / det}, 0};
+  const double reach = std::max({largest(v0), largest(v1), largest(v2)});
+  const double height = std::abs(volume) / glm::length(c0 + c1 + c2);
+  crossing.slack = std::min(4e-6 + 2e-6 * reach / height, 1e-2);
+  return true;
+}
+
+auto rank(const RayHit& hit) {
+  return std::make_tuple(hit.order, hit.part->object, hit.part->first_triangle + hit.triangle);
+}
+
+} // namespace
+
+struct RayGeometry::Impl {
+  const Parts* parts = nullptr;
+  std::vector<std::vector<Vec3>> corners; ///< eye space, by part and vertex
+  std::vector<std::uint32_t> part_of;     ///< by Embree primitive
+  std::vector<std::uint32_t> first_of;    ///< by part: its first Embree primitive
+  double scale = 1;                       ///< Embree's units per unit of eye space, a power of two
+  Device device;
+  RayScene scene;
+
+  void transform(const View& view);
+  void number_triangles();
+  void commit(const std::string& embree);
+  void fill(float* vertices, unsigned* indices) const;
+  void load(std::size_t part, std::uint32_t triangle, Vec3 (&v)[3]) const;
+};
+
+namespace {
+
+/// What the filter needs to know about the ray under way. Embree hands back a pointer to the first member.
+struct RayQuery {
+  RTCIntersectContext context;
+  const void* geometry;
+  Vec3 direction;
+  double near;
+  const RayHit* previous;
+  bool found;
+  RayHit best;
+};
+
+/// Texture and vertex alpha at a hit.
+bool is_there(const RayHit& hit) {
+  const Look& look = *hit.part->look;
+  if (look.alpha_mode == AlphaMode::opaque) return true;
+  const Vec2 uv = transform_uv(look.base, Vec2(interpolate(hit.part->base_uv, hit, Vec4(0))));
+  return is_present(look, albedo_alpha(look, interpolate(hit.part->color, hit, Vec4(1)).a, uv));
+}
+
+} // namespace
+
+void RayGeometry::Impl::transform(const View& view) {
+  corners.resize(parts->parts.size());
+  parallel_each(corners.size(), 1, [&](std::size_t i) {
+    const Part& part = parts->parts[i];
+    corners[i].resize(part.primitive->positions.size());
+    for (std::size_t k = 0; k < corners[i].size(); ++k)
+      corners[i][k] = to_eye(view, to_world(part.world, part.primitive->positions[k]));
+  });
+  double reach = 0;
+  for (const std::vector<Vec3>& list : corners)
+    for (const Vec3& v : list)
+      if (is_finite(v)) reach = std::max(reach, largest(v));
+  if (reach > 0) scale = std::ldexp(1.0, largest_exponent - std::ilogb(reach));
+}
+
+void RayGeometry::Impl::number_triangles() {
+  std::size_t count = 0;
+  for (const Part& part : parts->parts) count += part.primitive->indices.size() / 3;
+  if (count >= std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorCode::input, "scene: " + std::to_string(count) + " triangles are more than can be ray-traced");
+  part_of.reserve(count);
+  for (std::size_t i = 0; i < parts->parts.size(); ++i) {
+    first_of.push_back(static_cast<std::uint32_t>(part_of.size()));
+    part_of.insert(part_of.end(), parts->parts[i].primitive->indices.size() / 3, static_cast<std::uint32_t>(i));
+  }
+}
+
+void RayGeometry::Impl::load(std::size_t part, std::uint32_t triangle, Vec3 (&v)[3]) const {
+  const std::uint32_t* index = &parts->parts[part].primitive->indices[3 * std::size_t(triangle)];
+  for (int k = 0; k < 3; ++k) v[k] = corners[part][index[k]];
+}
+
+void RayGeometry::Impl::fill(float* vertices, unsigned* indices) const {
+  parallel_each(part_of.size(), 4096, [&](std::size_t i) {
+    Vec3 v[3], inflated[3];
+    load(part_of[i], static_cast<std::uint32_t>(i) - first_of[part_of[i]], v);
+    const double reach = std::max({largest(v[0]), largest(v[1]), largest(v[2])});
+    inflate(v, inflation * reach, inflated);
+    for (std::size_t k = 0; k < 9; ++k) vertices[9 * i + k] = static_cast<float>(scale * inflated[k / 3][int(k % 3)]);
+    for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
+  });
+}
+
+namespace {
+
+[[noreturn]] void fail(RTCDevice device, const char* what) {
+  throw Error(ErrorCode::output, std::string("Embree: ") + what + " (error " +
+                                     std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
+}
+
+} // namespace
+
+RayGeometry::RayGeometry(const Parts& parts, const View& view, const std::string& embree)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->parts = &parts;
+  impl_->transform(view);
+  impl_->number_triangles();
+  impl_->commit(embree);
+}
+
+RayGeometry::~RayGeometry() = default;
+
+const Vec3& RayGeometry::corner(const RayHit& hit, int i) const {
+  const std::size_t part = std::size_t(hit.part - impl_->parts->parts.data());
+  return impl_->corners[part][hit.part->primitive->indices[3 * std::size_t(hit.triangle) + std::size_t(i)]];
+}
+
+namespace {
+
+/// A ray exactly through an edge meets the triangles on both sides of it. For what shines through that is one surface,
+/// as it is for a rasteriser's fill rule.
+bool is_same_crossing(const RayHit& a, const RayHit& b) {
+  const auto on_edge = [](const RayHit& hit) {
+    return hit.weights[0] == 0 || hit.weights[1] == 0 || hit.weights[2] == 0;
+  };
+  return a.part->object == b.part->object && on_edge(a) && on_edge(b) &&
+         std::abs(a.distance - b.distance) <= 1e-12 * a.distance;
+}
+
+/// Judges one proposal of Embree's. @return the slack of an accepted hit, negative when it is refused.
+double judge(RayQuery& query, const Part& part, std::uint32_t triangle, const Vec3 (&v)[3]) {
+  Crossing crossing;
+  if (!intersect(query.direction, v[0], v[1], v[2], crossing) || crossing.distance < query.near) return -1;
+  if (!part.look->double_sided && crossing.det > 0) return -1;
+  RayHit hit{crossing.distance, rounded_distance(crossing.distance), &part, triangle, {}};
+  std::copy(crossing.weights, crossing.weights + 3, hit.weights);
+  if (query.found && !(rank(hit) < rank(query.best))) return -1;
+  if (query.previous && (!(rank(*query.previous) < rank(hit)) || is_same_crossing(*query.previous, hit))) return -1;
+  if (!is_there(hit)) return -1;
+  query.best = hit;
+  query.found = true;
+  return crossing.slack;
+}
+
+} // namespace
+
+void RayGeometry::Impl::commit(const std::string& embree) {
+  device.reset(rtcNewDevice(embree.empty() ? nullptr : embree.c_str()));
+  if (!device) fail(nullptr, "cannot be started");
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (!part_of.empty()) {
+    const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcAttachGeometry(scene.get(), mesh);
+    rtcReleaseGeometry(mesh);
+    void* vertices =
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * part_of.size());
+    void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part_of.size());
+    if (!vertices || !indices) fail(device.get(), "has no memory for the triangles");
+    fill(static_cast<float*>(vertices), static_cast<unsigned*>(indices));
+    rtcSetGeometryIntersectFilterFunction(mesh, [](const RTCFilterFunctionNArguments* args) {
+      if (args->valid[0] != -1) return;
+      RayQuery& query = *reinterpret_cast<RayQuery*>(args->context);
+      const Impl& impl = *static_cast<const Impl*>(query.geometry);
+      const std::uint32_t primitive = RTCHitN_primID(args->hit, args->N, 0);
+      const std::uint32_t part = impl.part_of[primitive];
+      const std::uint32_t triangle = primitive - impl.first_of[part];
+      Vec3 v[3];
+      impl.load(part, triangle, v);
+      const double slack = judge(query, impl.parts->parts[part], triangle, v);
+      if (slack < 0)
+        args->valid[0] = 0;
+      else
+        RTCRayN_tfar(args->ray, args->N, 0) = static_cast<float>(query.best.distance * impl.scale * (1 + slack));
+    });
+    rtcCommitGeometry(mesh);
+  }
+  rtcCommitScene(scene.get());
+  if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
+    throw Error(ErrorCode::output,
+                "Embree: cannot build its tree (error " + std::to_string(static_cast<int>(error)) + ")");
+}
+
+bool RayGeometry::first_hit(const Vec3& direction, double near, const RayHit* previous, RayHit& hit) const {
+  RayQuery query{};
+  rtcInitIntersectContext(&query.context);
+  query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  query.geometry = impl_.get();
+  query.direction = direction;
+  query.near = near;
+  query.previous = previous;
+  RTCRayHit ray{};
+  ray.ray.dir_x = static_cast<float>(direction.x);
+  ray.ray.dir_y = static_cast<float>(direction.y);
+  ray.ray.dir_z = static_cast<float>(direction.z);
+  // One hundredth is the largest slack, so no hit that float32 puts too near is lost.
+  ray.ray.tnear = static_cast<float>(0.99 * impl_->scale * std::max(near, previous ? previous->distance : 0.0));
+  ray.ray.tfar = std::numeric_limits<float>::infinity();
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene.get(), &query.context, &ray);
+  if (query.found) hit = query.best;
+  return query.found;
+}
+
+Vec4 interpolate(const Attribute* attribute, const RayHit& hit, const Vec4& fallback) {
+  if (!attribute) return fallback;
+  Vec4 value(0, 0, 0, attribute->components < 4 ? 1 : 0);
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::uint32_t index = hit.part->primitive->indices[3 * std::size_t(hit.triangle) + std::size_t(corner)];
+    const float* entry = &attribute->values[std::size_t(index) * std::size_t(attribute->components)];
+    for (int i = 0; i < attribute->components; ++i) value[i] += hit.weights[corner] * double(entry[i]);
+  }
+  return value;
+}
+
+} // namespace domewarp

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "domewarp/core/vectors.h"
+#include "domewarp/render/parts.h"
+
+namespace domewarp {
+
+// The one definition of what a surface looks like, for both renderers (gl_shaders.cpp says the same in GLSL):
+//
+//   albedo = base_color * base_texture(uv) * COLOR_0
+//   light  = 1 when unlit, else 0.35 + 0.65 |n . v|, v from the source position to the eye
+//   colour = light * albedo.rgb + emissive * emissive_texture(uv)
+//   alpha  = 1 when opaque; mask: nothing where albedo.a < cutoff, else 1; blend: albedo.a, nothing below 1/510
+//
+// All in linear light. Textures are read at full resolution with the sampler's wrap, bilinear between decoded texels or
+// nearest as its magnification filter says. n is NORMAL, else the normal of the triangle.
+
+/// What the renderers know about a point of a surface, in eye space.
+struct SurfacePoint {
+  Vec3 position = Vec3(0);
+  Vec3 normal = Vec3(0);                     ///< any length; zero counts as facing the eye
+  Vec4 color = Vec4(1);                      ///< COLOR_0, linear
+  Vec2 base_uv = Vec2(0), glow_uv = Vec2(0); ///< after the texture transform
+};
+
+/// Blended surfaces with less alpha than this are not there: half an 8-bit step.
+inline constexpr double invisible_alpha = 1.0 / 510;
+
+/// Linear light of an 8-bit sRGB value, and back (rounded, out-of-range values clamped, NaN black).
+double linear_of_srgb(std::uint8_t value);
+std::uint8_t srgb_of_linear(double value);
+
+/// Texture coordinates after the texture transform.
+Vec2 transform_uv(const TextureUse& use, const Vec2& uv);
+
+/// Linear colour and alpha at texture coordinates (white without a texture; coordinates that are not finite read 0).
+Vec4 sample(const TextureUse& use, const Vec2& uv);
+
+/// albedo.a alone, for alpha tests.
+double albedo_alpha(const Look& look, double color_alpha, const Vec2& base_uv);
+
+/// Whether a fragment of this albedo alpha is there at all.
+bool is_present(const Look& look, double albedo_alpha);
+
+/// Linear colour, straight alpha.
+Vec4 shade(const Look& look, const SurfacePoint& point, bool unlit);
+
+/// One pixel from its accumulated light (linear, multiplied by alpha, alpha last) over a background (sRGB, straight).
+std::array<std::uint8_t, 4> resolve_pixel(const Vec4& light, const std::array<std::uint8_t, 4>& background);
+
+} // namespace domewarp

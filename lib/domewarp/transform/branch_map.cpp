@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "domewarp/transform/image_map.h"
+#include "domewarp/transform/polar.h"
+#include "domewarp/transform/radial_table.h"
+#include "domewarp/transform/weight.h"
+
+namespace domewarp {
+
+namespace {
+
+// sin(theta) below which K has reached its value on the axis.
+constexpr double smallest_sine = 1e-150;
+
+} // namespace
+
+struct BranchMap::Impl {
+  Surface surface;
+  std::size_t index;
+  Branch branch;
+  double mean = 1;
+  RadialTable table{};
+  TableReport report{};
+  Vec2 low{0, 1}, high{0, -1}; // sine and cosine of the ends
+  double u_low = 0, u_high = 1;
+  double least = 0, most = 0; // image radius
+  RadialFactors at_low{}, at_high{};
+
+  void tabulate() {
+    const auto start = std::chrono::steady_clock::now();
+    table = make_radial_table(surface, index);
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    report = {table.qualifies, 0, RadialTable::degree, table.max_error, elapsed.count()};
+    for (const auto& segment : table.segments) report.pieces += segment.pieces;
+    if (!table.qualifies) table = {};
+  }
+
+  void find_ends() {
+    std::tie(least, most) = std::minmax(branch.radius_low, branch.radius_high);
+    low = {std::sin(branch.theta_low), std::cos(branch.theta_low)};
+    high = {std::sin(branch.theta_high), std::cos(branch.theta_high)};
+    const bool from_axis = branch.theta_low == 0, to_back = branch.theta_high >= std::numbers::pi;
+    u_low = from_axis ? 0 : half_angle_index(low.x, low.y, 1);
+    u_high = to_back ? 1 : half_angle_index(high.x, high.y, 1);
+    const RadialJet first = surface.radial(index, branch.theta_low), last = surface.radial(index, branch.theta_high);
+    at_low = {from_axis ? first.dr : first.r / low.x, weight(first.dr, mean)};
+    at_high = {last.r / high.x, weight(last.dr, mean)};
+  }
+
+  // R and g of a direction within the branch.
+  struct Values {
+    double radius, g;
+  };
+
+  double direct_radius(const Polar& p) const {
+    return surface.radius(index, std::max(p.r / p.rho, smallest_sine), p.z / p.rho);
+  }
+
+  Values values(const Polar& p, double u) const {
+    if (!report.used) {
+      const RadialJet jet = surface.radial(index, std::atan2(p.r, p.z));
+      return {direct_radius(p), weight(jet.dr, mean)};
+    }
+    const TableValue value = look_up(table, u);
+    return {value.fine ? std::clamp(value.ratio * u, least, most) : direct_radius(p), value.g};
+  }
+
+  bool is_below(double u) const { return u < u_low; }
+  bool is_above(double u) const { return u > u_high; }
+};
+
+BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method) {
+  const Branch& range = surface.branches()[branch];
+  auto impl = std::make_unique<Impl>(Impl{surface, branch, range, mean_slope(range)});
+  if (method != Method::direct) impl->tabulate();
+  impl->find_ends();
+  impl_ = std::move(impl);
+}
+
+BranchMap::~BranchMap() = default;
+BranchMap::BranchMap(BranchMap&&) noexcept = default;
+BranchMap& BranchMap::operator=(BranchMap&&) noexcept = default;
+
+const Branch& BranchMap::branch() const { return impl_->branch; }
+const TableReport& BranchMap::table() const { return impl_->report; }
+
+RadialFactors BranchMap::factors(const Vec3& p) const {
+  const Polar q = polar(p);
+  const double u = half_angle_index(q.r, q.z, q.rho);
+  if (impl_->is_below(u)) return impl_->at_low;
+  if (impl_->is_above(u)) return impl_->at_high;
+  if (impl_->report.used && q.z >= 0) {
+    // K = (R / u) (u / s) without a division by r.
+    const TableValue value = look_up(impl_->table, u);
+    const double radius = value.ratio * u;
+    const bool within = radius >= impl_->least && radius <= impl_->most;
+    if (value.fine && within) return {value.ratio * (q.rho / (q.r + q.rho + q.z)), value.g};
+  }
+  const auto [radius, g] = impl_->values(q, u);
+  return {radius / std::max(q.r / q.rho, smallest_sine), g};
+}
+
+Vec2 BranchMap::image(const Vec3& p) const {
+  const Polar q = polar(p);
+  const double u = half_angle_index(q.r, q.z, q.rho);
+  const bool inside = !impl_->is_below(u) && !impl_->is_above(u);
+  if (inside && q.z < 0) {
+    // K has no bound on the backward axis, which is a circle in the image; its point on the x axis stands for it.
+    return (q.r > 0 ? impl_->values(q, u).radius : impl_->branch.radius_high) * side(q);
+  }
+  const double scale = factors(p).k / q.rho;
+  return {q.x * scale, q.y * scale};
+}
+
+Vec2 BranchMap::inside(const Vec3& p) const {
+  const Polar q = polar(p);
+  const Vec2 low = impl_->low, high = impl_->high;
+  return q.unit * Vec2(impl_->branch.theta_low == 0 ? q.rho : q.r * low.y - q.z * low.x,
+                       impl_->u_high == 1 ? q.rho : q.z * high.x - q.r * high.y);
+}
+
+Vec3 BranchMap::weight_jet(double theta) const { return domewarp::weight_jet(impl_->surface, impl_->index, theta); }
+
+} // namespace domewarp

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/render/rasterise.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "domewarp/core/errors.h"
+#include "render_scenes.h"
+
+namespace domewarp {
+namespace {
+
+using namespace test;
+
+const Raster square{64, 64};
+
+/// A camera at the origin that sees 90 degrees.
+Camera make_camera() {
+  Camera camera;
+  camera.yfov = std::numbers::pi / 2;
+  camera.znear = 0.1;
+  camera.zfar = 100;
+  return camera;
+}
+
+Scene with_camera(Scene scene) {
+  scene.cameras = {make_camera()};
+  return scene;
+}
+
+std::size_t at(int column, int row) {
+  return std::size_t(row) * 64 + std::size_t(column);
+}
+
+TEST(Rasterise, DrawsThroughTheCameraOfTheFileTheRightWayUp) {
+  Scene scene = with_camera({});
+  const int red = add_material(scene, {1, 0, 0, 1});
+  add(scene, make_quad({0, 0, -2}, {2, 0, 0}, {0, 2, 0}, red)); // fills the upper right quarter
+  const Frame frame = rasterise(scene, square, {});
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 64; ++column)
+      EXPECT_EQ(frame.object[at(column, row)], column >= 32 && row < 32 ? 1u : 0u) << column << " " << row;
+  EXPECT_GT(frame.rgba[4 * at(40, 10)], 200);
+  EXPECT_EQ(frame.rgba[4 * at(10, 40) + 3], 0);
+  EXPECT_FALSE(frame.renderer.empty());
+  EXPECT_TRUE(std::isnan(frame.depth[at(40, 10)])) << "no _SOURCE_POSITION";
+}
+
+TEST(Rasterise, MovingCameraAndObjectTogetherChangesNothing) {
+  Scene scene = with_camera(make_room_with_board());
+  const Frame still = rasterise(scene, square, {});
+  // A power of two and a quarter turn keep every position exact.
+  Mat4 move(1);
+  move[0] = {0, 0, -1, 0};
+  move[2] = {1, 0, 0, 0};
+  move[3] = {16, -8, 4, 1};
+  scene.cameras[0].world = move;
+  for (Instance& instance : scene.instances) instance.world = move * instance.world;
+  EXPECT_EQ(count_object_differences(still, rasterise(scene, square, {})), 0u);
+}
+
+TEST(Rasterise, AnOrthographicCameraShowsItsExtent) {
+  Scene scene;
+  Camera camera;
+  camera.perspective = false;
+  camera.xmag = camera.ymag = 4;
+  camera.zfar = 10;
+  scene.cameras = {camera};
+  add(scene, make_quad({-2, -1, -5}, {4, 0, 0}, {0, 2, 0}, -1));
+  const Frame frame = rasterise(scene, square, {});
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 64; ++column)
+      EXPECT_EQ(frame.object[at(column, row)] != 0, column >= 16 && column < 48 && row >= 24 && row < 40);
+}
+
+TEST(Rasterise, WhatLiesExactlyOnTheNearAndFarPlanesIsDrawn) {
+  for (const double z : {0.5, 3.0})
+    for (const bool perspective : {true, false}) {
+      Scene scene = with_camera({});
+      scene.cameras[0].perspective = perspective;
+      scene.cameras[0].ymag = 1;
+      scene.cameras[0].znear = 0.5;
+      scene.cameras[0].zfar = 3;
+      add(scene, make_quad({-9, -9, -z}, {18, 0, 0}, {0, 18, 0}, -1));
+      EXPECT_EQ(rasterise(scene, square, {}).object[at(20, 20)], 1u) << z;
+    }
+}
+
+TEST(Rasterise, AnInfiniteCameraSeesFarThings) {
+  Scene scene = with_camera({});
+  scene.cameras[0].zfar = 0;
+  add(scene, make_quad({-9e6, -9e6, -1e6}, {18e6, 0, 0}, {0, 18e6, 0}, -1));
+  EXPECT_EQ(rasterise(scene, square, {}).object[at(20, 20)], 1u);
+}
+
+TEST(Rasterise, BackFacesOfSingleSidedMaterialsAreNotDrawn) {
+  Scene scene = with_camera({});
+  add_material(scene, Vec4(1), AlphaMode::opaque, true);
+  add(scene, make_quad({9, -9, -1}, {-18, 0, 0}, {0, 18, 0}, -1));
+  EXPECT_EQ(rasterise(scene, square, {}).object[at(32, 32)], 0u);
+  scene.meshes[0].primitives[0].material = 0;
+  EXPECT_EQ(rasterise(scene, square, {}).object[at(32, 32)], 1u);
+  scene.meshes[0].primitives[0].material = -1;
+  scene.instances[0].world[0][0] = -1;
+  EXPECT_EQ(rasterise(scene, square, {}).object[at(32, 32)], 1u) << "the winding in world space decides";
+}
+
+TEST(Rasterise, TilesMakeTheSamePicture) {
+  const Display display = make_display("1-r^2", 100, 70);
+  Scene source = make_room_with_board();
+  add_texture(source, 2, 10497, 9729);
+  const Scene scene = prewarp(source, display, 16);
+  RasterOptions options;
+  const Frame whole = rasterise(scene, display.raster, options);
+  options.tile = 32;
+  const Frame tiled = rasterise(scene, display.raster, options);
+  EXPECT_EQ(whole.object, tiled.object);
+  for (std::size_t i = 0; i < whole.rgba.size(); ++i) ASSERT_NEAR(whole.rgba[i], tiled.rgba[i], 1) << i;
+  for (std::size_t i = 0; i < whole.depth.size(); ++i) ASSERT_NEAR(whole.depth[i], tiled.depth[i], 1e-5) << i;
+  // A vertex may be rounded to the neighbouring 1/256 px, which moves an edge across a pixel centre now and then.
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < whole.triangle.size(); ++i) others += whole.triangle[i] != tiled.triangle[i];
+  EXPECT_LE(others, 7u);
+}
+
+TEST(Rasterise, TheSameSceneMakesTheSameBytes) {
+  const Display display = make_display("1-r^2", 64, 64);
+  const Scene scene = prewarp(make_room_with_board(), display, 8);
+  EXPECT_TRUE(is_same(rasterise(scene, display.raster, {}), rasterise(scene, display.raster, {})));
+}
+
+TEST(Rasterise, BlendedTrianglesAreSortedAndNotedByTheNearest) {
+  Scene scene = with_camera({});
+  const int red = add_material(scene, {1, 0, 0, 0.5}, AlphaMode::blend);
+  const int green = add_material(scene, {0, 1, 0, 0.5}, AlphaMode::blend);
+  const int blue = add_material(scene, {0, 0, 1, 1});
+  add(scene, make_quad({-9, -9, -1}, {18, 0, 0}, {0, 18, 0}, red));
+  add(scene, make_quad({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, green));
+  add(scene, make_quad({-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, blue));
+  RasterOptions options;
+  options.unlit = true;
+  const Frame frame = rasterise(scene, square, options);
+  const std::size_t centre = at(32, 32);
+  EXPECT_EQ(frame.object[centre], 1u);
+  EXPECT_NEAR(frame.rgba[4 * centre], 188, 1);
+  EXPECT_NEAR(frame.rgba[4 * centre + 1], 137, 1);
+  EXPECT_NEAR(frame.rgba[4 * centre + 2], 137, 1);
+}
+
+TEST(Rasterise, TriangleIdsCountAcrossPrimitives) {
+  Scene scene = with_camera({});
+  Mesh mesh = make_quad({-9, -9, -2}, {9, 0, 0}, {0, 18, 0}, -1);
+  mesh.primitives.push_back(make_quad({0, -9, -2}, {9, 0, 0}, {0, 18, 0}, add_material(scene, Vec4(1))).primitives[0]);
+  add(scene, mesh);
+  const Frame frame = rasterise(scene, square, {});
+  EXPECT_EQ(frame.triangle[at(40, 62)], 4u);
+  EXPECT_EQ(frame.triangle[at(1, 32)], 1u);
+}
+
+TEST(Rasterise, CamerasThatShowNothingAreRefused) {
+  EXPECT_THROW(rasterise(make_room(), square, {}), Error);
+  const auto refuses = [](auto&& change) {
+    Scene scene = with_camera(make_room());
+    change(scene.cameras[0]);
+    EXPECT_THROW(rasterise(scene, square, {}), Error);
+  };
+  refuses([](Camera& c) { c.znear = 0; });
+  refuses([](Camera& c) { c.zfar = 0.05; });
+  refuses([](Camera& c) { c.yfov = 4; });
+  refuses([](Camera& c) { c.world = Mat4(0); });
+  refuses([](Camera& c) { c.perspective = false; });
+  EXPECT_THROW(rasterise(with_camera({}), Raster{0, 4}, {}), Error);
+}
+
+TEST(Rasterise, BrokenVerticesAreHarmless) {
+  for (const float size : {1e30f, 3e38f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+    Scene scene = with_camera(make_room());
+    scene.meshes[0].primitives[0].positions[2] = {size, size, -size};
+    EXPECT_NO_THROW(rasterise(scene, square, {})) << size;
+  }
+}
+
+} // namespace
+} // namespace domewarp
