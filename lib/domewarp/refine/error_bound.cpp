@@ -39,7 +39,7 @@ ErrorBound::ErrorBound(const Surface& surface, std::size_t branch, const BranchM
   std::vector<Row> base(cells);
   const double step = (theta_high_ - theta_low_) / cells;
   for (int i = 0; i < cells; ++i) {
-    Row low, high;
+    Row low{}, high{};
     for (int k = 0; k <= samples; ++k) {
       const double theta = std::clamp(theta_low_ + (i + static_cast<double>(k) / samples) * step, smallest_angle, 3.14159);
       const Vec3 weight = projection == Projection::perspective ? map.weight_jet(theta) : Vec3(1, 0, 0);
