@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Installs what is missing on Debian 12, then configures and builds (Release). Safe to run again: it is quick then.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+packages=(
+  g++ cmake ninja-build ccache pkg-config
+  libopenmesh-dev libcgal-dev libglm-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev
+  libegl-dev libgl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
+  libcli11-dev nlohmann-json3-dev libpng-dev libturbojpeg0-dev libwebp-dev
+  libgtest-dev libgmock-dev libmuparser-dev libmpfr-dev libgmp-dev
+)
+missing=()
+for package in "${packages[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "Installing ${missing[*]}"
+  sudo=$([ "$(id -u)" = 0 ] || echo sudo)
+  $sudo apt-get -o DPkg::Lock::Timeout=500 update -qq
+  $sudo env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=500 install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
+
+cmake --preset release >/dev/null
+cmake --build --preset release
