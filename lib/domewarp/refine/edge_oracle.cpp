@@ -17,6 +17,9 @@ namespace {
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
 
+/// A bound that an eighth of the edge still exceeds by this factor although samples do not is no bound at all.
+constexpr double hopeless = 64;
+
 Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
 
 Vec2 dehomogenise(const Vec3& q) { return Vec2(q) / q.z; }
@@ -128,7 +131,9 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   const EdgeBound bound = bound_.edge(a.eye, b.eye, a.mapped.weight, b.mapped.weight);
   decision.error = static_cast<float>(bound.error());
   decision.depth_error = static_cast<float>(bound.depth);
-  const bool deep_enough = bound.depth <= options_.depth_tolerance;
+  // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified: samples must do.
+  const bool unbounded = !(bound.error(8) <= hopeless * tolerance);
+  const bool deep_enough = unbounded || bound.depth <= options_.depth_tolerance;
   if (decision.error <= tolerance && deep_enough) return decision;
 
   // The midpoint comes first: where it is off by more than the tolerance it is the vertex that is needed.
@@ -142,7 +147,6 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
     return glm::length(dehomogenise(exact[eighth]) - dehomogenise(interpolate(a.mapped, b.mapped, eighth / 8.0)));
   };
   decision.split = Split{0.5, middle};
-  const bool finite = std::isfinite(bound.error());
   double worst = evaluate(4);
   if (worst > tolerance || !deep_enough) return decision;
   for (const int n : {4, 8}) {
@@ -150,7 +154,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
     for (int i = stride; i < 8; i += 2 * stride)
       if (worst <= tolerance) worst = std::max(worst, evaluate(i));
     if (worst > tolerance) return decision;
-    if (!finite) continue;
+    if (unbounded) continue;
     double between = 0;
     for (int i = 0; i < 8; i += stride)
       between = std::max(between, segment_distance(interpolate(a.mapped, b.mapped, i / 8.0),
@@ -162,7 +166,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
     }
     if (between + bound.error(2 * n) > tolerance) return decision; // more samples cannot help
   }
-  if (!finite && 2 * worst <= tolerance) {
+  if (unbounded && 2 * worst <= tolerance) {
     decision.split.reset();
     decision.error = static_cast<float>(worst);
     decision.certified = false;

@@ -15,6 +15,10 @@ namespace domewarp {
 
 namespace {
 
+/// Edges are refined to this share of the tolerance. The rest is for the interiors, which are judged at four points (up
+/// to 1.8 % worse in between on the measured scenes), for rounding to float32 and for the rasteriser's subpixel grid.
+constexpr double working_share = 0.97;
+
 class Stopwatch {
 public:
   /// Milliseconds since the last call.
@@ -79,7 +83,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   report.soup_ms = watch.lap();
 
   Scene out = empty_copy(scene);
-  OracleOptions oracle_options{options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
+  OracleOptions oracle_options{working_share * options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
   if (!options.subdivide) oracle_options.tolerance = oracle_options.depth_tolerance = 1e30;
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];

@@ -76,7 +76,7 @@ struct BranchMap::Impl {
 
 BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method) {
   const Branch& range = surface.branches()[branch];
-  auto impl = std::make_unique<Impl>(Impl{surface, branch, range, mean_slope(range)});
+  auto impl = std::make_unique<Impl>(Impl{surface, branch, range, mean_slope(surface, branch)});
   if (method != Method::direct) impl->tabulate();
   impl->find_ends();
   impl_ = std::move(impl);

@@ -58,7 +58,7 @@ struct Sample {
 class Sampler {
 public:
   Sampler(const Surface& surface, std::size_t branch)
-      : surface_(surface), branch_(branch), mean_(mean_slope(surface.branches()[branch])) {}
+      : surface_(surface), branch_(branch), mean_(mean_slope(surface, branch)) {}
 
   Sample at(double u) const {
     const double n = u, o = 1 - u, square = n * n + o * o;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "domewarp/transform/image_map.h"
 
@@ -36,7 +37,11 @@ Vec2 weight_and_slope(const Surface& surface, std::size_t branch, double theta, 
 
 double weight(double slope, double mean) { return 1 / std::sqrt(std::sqrt(blend(slope, 0, mean).x)); }
 
-double mean_slope(const Branch& branch) {
+double mean_slope(const Surface& surface, std::size_t index) {
+  const Branch& branch = surface.branches()[index];
+  // The joints of a measured profile are smooth enough: R' is continuous there.
+  const bool has_kink = surface.options().profile.empty() && !surface.joints(index).empty();
+  if (branch.fold_low || branch.fold_high || has_kink) return std::numeric_limits<double>::infinity();
   return std::abs(branch.radius_high - branch.radius_low) / (branch.theta_high - branch.theta_low);
 }
 
@@ -46,7 +51,7 @@ Vec3 weight_jet(const Surface& surface, std::size_t branch, double theta) {
   const auto next = std::upper_bound(joints.begin(), joints.end(), theta);
   const double lo = next == joints.begin() ? range.theta_low : *(next - 1);
   const double hi = next == joints.end() ? range.theta_high : *next;
-  const double mean = mean_slope(range);
+  const double mean = mean_slope(surface, branch);
   // Nothing of a picture is that narrow, and the differences below would be rounding.
   constexpr double narrow = 1e-9;
   if (hi - lo < narrow) return {weight_and_slope(surface, branch, theta, mean).x, 0, 0};

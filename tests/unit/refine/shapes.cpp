@@ -43,6 +43,7 @@ SurfaceOptions lens(Lens kind, double fov_deg) {
 
 Conversion convert_shape(const Scene& scene, const SurfaceOptions& options, RefineOptions refine_options, Raster raster) {
   refine_options.source_attributes = true;
+  refine_options.max_triangles = std::min<std::size_t>(refine_options.max_triangles, 200'000);
   const Surface surface(options, screen_radius(raster));
   const ImageMap map = make_image_map(surface, Method::automatic);
   Conversion conversion;
