@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The contract of the command line: exit codes, one sentence on stderr, nothing written when it goes wrong.
+# Usage: command_line.sh DOMEWARP REPOSITORY
+set -u
+domewarp=$1
+root=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+passes=0
+
+check() { # NAME CONDITION...
+  local name=$1
+  shift
+  if "$@"; then passes=$((passes + 1)); else failures=$((failures + 1)); echo "FAILED: $name"; fi
+}
+
+# refuses CODE WORD ARGUMENTS...: exits with CODE, says one line with WORD on stderr, nothing on stdout, writes no file
+refuses() {
+  local code=$1 word=$2
+  shift 2
+  "$domewarp" "$@" >stdout 2>stderr </dev/null
+  local got=$?
+  check "exit $code, got $got: $*" [ "$got" = "$code" ]
+  check "one line on stderr: $*" [ "$(wc -l <stderr)" = 1 ]
+  check "stderr names $word: $* -> $(cat stderr)" grep -qF -- "$word" stderr
+  check "silent stdout: $*" [ ! -s stdout ]
+  check "nothing written: $*" [ -z "$(ls | grep -v -e '^std' -e '^in')" ]
+}
+
+scene=$root/data/cubes.glb
+head -c 1000 "$scene" >in_broken.glb
+refuses 2 missing.glb convert missing.glb -o out.glb --curve '1-r^2'
+refuses 2 in_broken.glb convert in_broken.glb -o out.glb --curve '1-r^2'
+refuses 1 column convert "$scene" -o out.glb --curve 'r+'
+refuses 1 --curve convert "$scene" -o out.glb --curve 'log(-1)'
+refuses 1 --tolerance convert "$scene" -o out.glb --curve '1-r^2' --tolerance -1
+refuses 1 --tolerance convert "$scene" -o out.glb --curve '1-r^2' --tolerance=nan
+refuses 1 --size convert "$scene" -o out.glb --curve '1-r^2' --size 0x0
+refuses 1 --size convert "$scene" -o out.glb --curve '1-r^2' --size 99999999x9
+refuses 1 --eye convert "$scene" -o out.glb --curve '1-r^2' --eye a,b,c
+refuses 1 --eye convert "$scene" -o out.glb --curve '1-r^2' --eye 1,2
+refuses 1 --camera convert "$scene" -o out.glb --curve '1-r^2' --camera nobody
+refuses 1 --lens convert "$scene" -o out.glb
+refuses 1 --lens convert "$scene" -o out.glb --lens fish
+refuses 1 --colour convert "$scene" -o out.glb --curve '1-r^2' --colour red
+refuses 1 .obj convert "$scene" -o out.obj --curve '1-r^2'
+refuses 4 nowhere convert "$scene" -o nowhere/out.glb --curve '1-r^2' --quiet
+refuses 2 extras compare "$scene" "$scene"
+
+same() { # NAME EXPECTED GOT
+  check "$1: expected '$2', got '$3'" [ "$2" = "$3" ]
+}
+# Known points: the parabola's f(1) = 0, so a direction at 90 degrees lands on radius 1; the axis on the centre.
+same "project the axis" "0 0 2 visible" "$(echo 0 0 -2 | "$domewarp" project --curve '1-r^2')"
+same "project 90 degrees" "1 0 3 visible" "$(echo 3 0 0 | "$domewarp" project --lens equidistant --fov 180 | sed 's/^0\.99999999999999[0-9]*/1/')"
+same "a blind point" "nan nan 1 blind" "$(echo 0 0 1 | "$domewarp" project --curve '1-r^2')"
+same "inverse of the centre" "0 0 -1 visible" "$(echo 0 0 | "$domewarp" project --curve '1-r^2' --inverse | sed 's/-0 /0 /g')"
+same "inverse outside" "nan nan nan outside" "$(echo 3 3 | "$domewarp" project --curve '1-r^2' --inverse)"
+printf '0 0 -1\nx y z\n' | "$domewarp" project --curve '1-r^2' >stdout 2>stderr
+same "a line that is no point exits with" 2 $?
+check "the line is named" grep -q "line 2" stderr
+same "a curve that starts with a minus" 0 "$(echo 0 0 -1 | "$domewarp" project --curve '-r+1' >stdout 2>&1; echo $?)"
+
+# The whole chain, small: convert both projections, compare within the tolerance plus a subpixel step.
+for projection in perspective orthographic; do
+  "$domewarp" convert "$scene" -o warped.glb --curve '1-r^2' --size 512x512 --projection $projection --source-attributes --report report.json --quiet
+  same "convert $projection" 0 $?
+  "$domewarp" compare "$scene" warped.glb --out compared --max-displacement 0.504 --max-pinholes 0 --json >compare.json
+  same "compare $projection" 0 $?
+  check "pictures of $projection" [ -s compared/rasterised.png -a -s compared/raytraced.png -a -s compared/difference.png ]
+  check "no torn position in $projection" grep -q '"torn_positions": 0' <("$domewarp" inspect warped.glb --json)
+done
+# Negative control: without subdivision the same comparison must fail.
+"$domewarp" convert "$scene" -o coarse.glb --curve '1-r^2' --size 512x512 --subdivide none --source-attributes --quiet
+"$domewarp" compare "$scene" coarse.glb --max-displacement 0.504 >/dev/null 2>&1
+same "compare a coarse file" 3 $?
+"$domewarp" convert "$scene" -o limited.glb --curve '1-r^2' --max-triangles 500 --quiet 2>/dev/null
+same "stopped by --max-triangles" 3 $?
+"$domewarp" convert "$scene" -o one.glb --curve '1-r^2' --threads 1 --quiet
+"$domewarp" convert "$scene" -o two.glb --curve '1-r^2' --threads 2 --quiet
+check "same bytes for 1 and 2 threads" cmp -s one.glb two.glb
+
+# The generator still makes the committed scenes, byte for byte.
+"$domewarp" scenes --out scenes >/dev/null
+for file in "$root"/data/*.glb; do check "$(basename "$file") is as committed" cmp -s "$file" "scenes/$(basename "$file")"; done
+
+# The Khronos validator, where it is installed (npm install gltf-validator in the build folder).
+for folder in "${DOMEWARP_NODE_MODULES:-}" "$root/build/node_modules"; do
+  [ -d "$folder/gltf-validator" ] && command -v node >/dev/null || continue
+  cat >validate.cjs <<J
+const validator = require('$folder/gltf-validator'), fs = require('fs');
+(async () => { let errors = 0;
+  for (const file of process.argv.slice(2)) errors += (await validator.validateBytes(new Uint8Array(fs.readFileSync(file)))).issues.numErrors;
+  process.exit(errors ? 1 : 0); })();
+J
+  check "validator: 0 errors" node validate.cjs warped.glb coarse.glb one.glb scenes/*.glb
+  break
+done
+
+echo "$passes passed, $failures failed"
+[ "$failures" = 0 ]
