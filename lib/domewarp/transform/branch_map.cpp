@@ -19,6 +19,13 @@ constexpr double smallest_sine = 1e-150;
 
 } // namespace
 
+namespace {
+
+// A direction at exactly 90 degrees belongs to a lens of 180, though the cosine of the nearest double is 6e-17.
+Vec2 sine_and_cosine(double theta) { return {std::sin(theta), theta == std::numbers::pi / 2 ? 0 : std::cos(theta)}; }
+
+} // namespace
+
 struct BranchMap::Impl {
   Surface surface;
   std::size_t index;
@@ -42,8 +49,8 @@ struct BranchMap::Impl {
 
   void find_ends() {
     std::tie(least, most) = std::minmax(branch.radius_low, branch.radius_high);
-    low = {std::sin(branch.theta_low), std::cos(branch.theta_low)};
-    high = {std::sin(branch.theta_high), std::cos(branch.theta_high)};
+    low = sine_and_cosine(branch.theta_low);
+    high = sine_and_cosine(branch.theta_high);
     const bool from_axis = branch.theta_low == 0, to_back = branch.theta_high >= std::numbers::pi;
     u_low = from_axis ? 0 : half_angle_index(low.x, low.y, 1);
     u_high = to_back ? 1 : half_angle_index(high.x, high.y, 1);

@@ -34,11 +34,9 @@ ImagePoint project(const Surface& surface, const ImageMap& map, const Vec3& p) {
   if (!is_finite(p) || p == Vec3(0)) return blind;
   const Polar q = polar(p);
   const Vec3 scaled(q.x, q.y, -q.z); // signs of inside() survive where p is denormal
-  // The sine and cosine of a branch's end are rounded: a direction at exactly 90 degrees belongs to a lens of 180.
-  constexpr double rounding = 4e-16;
   for (const BranchMap& branch : map.branches) {
     const Vec2 within = branch.inside(scaled);
-    if (within.x < -rounding * q.rho || within.y < -rounding * q.rho) continue;
+    if (within.x < 0 || within.y < 0) continue;
     const Vec2 image = branch.image(scaled);
     return {image.x, image.y, blind.depth, PointState::visible};
   }

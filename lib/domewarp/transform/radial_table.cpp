@@ -21,7 +21,7 @@ constexpr std::size_t piece_size = 2 * nodes;
 
 constexpr double allowed_error = 1e-10; // of R: what the map promises
 constexpr double even_goal = 1e-13;     // costs one doubling more than the promise, and lets round trips close
-constexpr double graded_goal = 1e-11;   // beside a fold the direct method itself is not better
+constexpr double graded_goal = 1e-13;   // beside a fold pieces shrink towards it
 constexpr double least_share = 0.1;     // of the error of R / u counts even at u = 0: K must hold near the axis
 constexpr double weight_goal = 1e-9;
 constexpr int piece_limit = 1024;
