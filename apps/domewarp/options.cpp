@@ -137,7 +137,7 @@ void add_quality_options(CLI::App& app, RefineOptions& refine) {
   auto* group = app.add_option_group("Quality");
   add(*group, "--tolerance", "Largest displacement of any drawn point, pixels (default 0.5)", "PX",
       [&refine](const std::string& text) { refine.tolerance_px = parse_positive("--tolerance", text); });
-  add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.01)", "REL",
+  add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.002)", "REL",
       [&refine](const std::string& text) { refine.depth_tolerance = parse_positive("--depth-tolerance", text); });
   add(*group, "--near", "Nothing nearer to the eye is drawn (default: 1e-5 of the scene's extent)", "D",
       [&refine](const std::string& text) { refine.near = parse_positive("--near", text); });

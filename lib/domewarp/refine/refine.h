@@ -16,7 +16,7 @@ namespace domewarp {
 
 struct RefineOptions {
   double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
-  double depth_tolerance = 0.01;     ///< largest relative error of the interpolated depth, > 0
+  double depth_tolerance = 0.002;    ///< largest relative error of the interpolated depth, > 0: 1 % put a train's wheels behind its rails
   Projection projection = Projection::perspective;
   double near = 0;                   ///< nothing nearer to the eye is drawn; 0: 1e-5 of the scene's extent
   std::size_t max_triangles = 50'000'000; ///< refinement stops here and says so
