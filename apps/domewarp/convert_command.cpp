@@ -62,8 +62,7 @@ void add_convert_command(CLI::App& app, int& status) {
   add_output_options(*command, arguments->options);
   command->add_flag("--draco", arguments->write.draco, "Compress with KHR_draco_mesh_compression, one grid for the file");
   command->add_flag("--quantize", arguments->write.quantize, "Store integers (KHR_mesh_quantization), one grid for the file");
-  command->add_option("--scene", arguments->read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
-  command->add_flag("--allow-external", arguments->read.allow_external, "Follow URIs that leave the scene's folder");
+  add_read_options(*command, arguments->read);
   command->add_option("--report", arguments->report, "Write the report as JSON")->type_name("FILE.json");
   command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the report as JSON");

@@ -8,6 +8,7 @@
 #include "domewarp/audit/inspect.h"
 #include "domewarp/convert/record.h"
 #include "domewarp/gltf/read.h"
+#include "options.h"
 
 namespace domewarp {
 
@@ -34,8 +35,7 @@ void add_inspect_command(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("inspect", "Mesh and crack statistics of any glTF, raw or warped.");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "The scene (.glb or .gltf)")->required();
-  command->add_option("--scene", arguments->read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
-  command->add_flag("--allow-external", arguments->read.allow_external, "Follow URIs that leave the scene's folder");
+  add_read_options(*command, arguments->read);
   command->add_flag("--json", arguments->json, "Print the statistics as JSON");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

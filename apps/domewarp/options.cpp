@@ -82,6 +82,11 @@ CLI::Option* add_choice(CLI::App& app, const char* name, const std::string& help
 
 } // namespace
 
+void add_read_options(CLI::App& app, ReadOptions& read) {
+  app.add_option("--scene", read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
+  app.add_flag("--allow-external", read.allow_external, "Follow URIs that leave the scene's folder");
+}
+
 void add_view_options(CLI::App& app, ViewOptions& view) {
   auto* group = app.add_option_group("View");
   const auto add_vector = [&](const char* name, const char* help, std::optional<Vec3>& out) {

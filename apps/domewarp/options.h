@@ -4,6 +4,7 @@
 #include <string>
 
 #include "domewarp/convert/convert.h"
+#include "domewarp/gltf/read.h"
 
 namespace CLI {
 class App;
@@ -18,6 +19,7 @@ double parse_number(const std::string& option, const std::string& text);
 std::size_t parse_count(const std::string& option, const std::string& text);
 
 /// Each adds a group of options that several commands share. Bad values throw Error(usage) while the line is parsed.
+void add_read_options(CLI::App& app, ReadOptions& read);
 void add_view_options(CLI::App& app, ViewOptions& view);
 void add_surface_options(CLI::App& app, SurfaceOptions& surface);
 void add_raster_options(CLI::App& app, Raster& raster);

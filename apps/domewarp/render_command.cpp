@@ -74,7 +74,7 @@ void add_render_command(CLI::App& app, int& status) {
   add_method_option(*command, arguments->options.method);
   add_quality_options(*command, arguments->options.refine);
   add_output_options(*command, arguments->options);
-  command->add_option("--scene", arguments->read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
+  add_read_options(*command, arguments->read);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "domewarp/refine/visible_region.h"
+
 namespace domewarp {
 
 double EdgeBound::error(int n) const {
@@ -85,10 +87,8 @@ struct Angles {
 Angles angle_range(const Vec3& a, const Vec3& b) {
   const auto theta = [](const Vec3& p) { return std::atan2(std::hypot(p.x, p.y), -p.z); };
   auto [low, high] = std::minmax({theta(a), theta(b)});
-  const Vec3 d = b - a;
-  const double t = (a.z * glm::dot(a, d) - d.z * glm::dot(a, a)) / (d.z * glm::dot(a, d) - a.z * glm::dot(d, d));
-  if (t > 0 && t < 1) {
-    const double middle = theta(a + t * d);
+  if (const std::optional<double> t = extremum(Boundary{Boundary::Kind::high_cone}, a, b)) {
+    const double middle = theta(a + *t * (b - a));
     low = std::min(low, middle);
     high = std::max(high, middle);
   }
