@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chart.h"
+
+namespace domewarp::bench {
+
+struct Options {
+  bool quick = false; ///< smoke test: every row, on data too small to mean anything
+  /// Says on a terminal what is being measured.
+  std::function<void(const std::string&)> progress = [](const std::string&) {};
+};
+
+/// What a bench found: printed, and written as CSV and SVG, by main.
+struct Result {
+  std::vector<Table> tables;
+  std::vector<Plot> plots;
+  std::vector<std::string> notes; ///< sentences under the tables: ratios reached, what was left out
+};
+
+/// One function per subcommand, each in the file of its name.
+Result run_map_bench(const Options& options);
+
+struct Bench {
+  const char* name;
+  const char* description;
+  Result (*run)(const Options&);
+};
+
+/// The subcommands. A new bench is a declaration above, a line here and its file in CMakeLists.txt.
+inline constexpr Bench benches[] = {
+    {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
+};
+
+} // namespace domewarp::bench

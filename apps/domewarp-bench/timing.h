@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace domewarp::bench {
+
+/// Seconds that one call takes.
+template <typename Work>
+double seconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The least time of each piece of work over some rounds in which all of them take turns, so that a noisy neighbour
+/// cannot favour one.
+inline std::vector<double> least_seconds(const std::vector<std::function<void()>>& works, int rounds) {
+  std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < works.size(); ++i) least[i] = std::min(least[i], seconds(works[i]));
+  return least;
+}
+
+} // namespace domewarp::bench
