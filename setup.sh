@@ -8,7 +8,7 @@ packages=(
   libopenmesh-dev libcgal-dev libglm-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev
   libegl-dev libgl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
   libcli11-dev nlohmann-json3-dev libpng-dev libturbojpeg0-dev libwebp-dev
-  libgtest-dev libgmock-dev libmuparser-dev libmpfr-dev libgmp-dev
+  libgtest-dev libgmock-dev libmuparser-dev libmpfr-dev libgmp-dev doxygen
 )
 missing=()
 for package in "${packages[@]}"; do
