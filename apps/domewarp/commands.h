@@ -11,6 +11,7 @@ namespace domewarp {
 /// promise not kept) in `status`; everything else that goes wrong is thrown as Error.
 void add_compare_command(CLI::App& app, int& status);
 void add_convert_command(CLI::App& app, int& status);
+void add_curve_command(CLI::App& app, int& status);
 void add_inspect_command(CLI::App& app, int& status);
 void add_project_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);

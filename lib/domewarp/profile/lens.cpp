@@ -27,7 +27,21 @@ RadialJet equidistant_depth(double a, double theta, double s, double c) {
   return {a * theta * c / s, a * dz, 2 * a * (theta * c / s - 1) / (s * s)};
 }
 
-const char* name(Lens lens) {
+void check_fov(Lens lens, double fov_deg) {
+  const double most = lens == Lens::orthographic ? 180 : 360;
+  const bool open = lens == Lens::stereographic;
+  if (fov_deg > 0 && (open ? fov_deg < most : fov_deg <= most)) return;
+  const char* reason = open                         ? " (its radius is infinite straight behind)"
+                       : lens == Lens::orthographic ? " (its radius falls again beyond 90 degrees off the axis)"
+                                                    : "";
+  refuse("--fov", std::string("the ") + to_string(lens) + " lens takes more than 0 and " +
+                      (open ? "less than " : "at most ") + to_text(most) + " degrees" + reason + ", got " +
+                      to_text(fov_deg));
+}
+
+} // namespace
+
+const char* to_string(Lens lens) {
   switch (lens) {
   case Lens::equidistant: return "equidistant";
   case Lens::equisolid: return "equisolid";
@@ -35,16 +49,6 @@ const char* name(Lens lens) {
   default: return "orthographic";
   }
 }
-
-void check_fov(Lens lens, double fov_deg) {
-  const double most = lens == Lens::orthographic ? 180 : 360;
-  const bool open = lens == Lens::stereographic;
-  if (fov_deg > 0 && (open ? fov_deg < most : fov_deg <= most)) return;
-  refuse("--fov", std::string("the ") + name(lens) + " lens takes more than 0 and " +
-                      (open ? "less than " : "at most ") + to_text(most) + " degrees, got " + to_text(fov_deg));
-}
-
-} // namespace
 
 LensForm make_lens(Lens lens, double fov_deg) {
   check_fov(lens, fov_deg);

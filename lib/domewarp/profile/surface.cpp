@@ -32,6 +32,14 @@ const char* to_string(RadiusLimit limit) {
   }
 }
 
+const char* to_string(KinkKind kind) {
+  switch (kind) {
+  case KinkKind::corner: return "corner";
+  case KinkKind::vertical_tangent: return "vertical tangent";
+  default: return "joint";
+  }
+}
+
 const SurfaceOptions& Surface::options() const { return parts_->options; }
 double Surface::r_max() const { return parts_->r_max; }
 RadiusLimit Surface::r_max_limit() const { return parts_->limit; }
@@ -72,16 +80,40 @@ std::optional<double> Surface::extended_radius(double s, double c) const {
   return std::isfinite(image) ? std::optional(image) : std::nullopt;
 }
 
-double Surface::blind_from() const {
-  const auto& [point, tangent] = parts_->rim;
-  const Branch& last = parts_->branches.back();
-  const bool rises = last.orientation > 0;
-  if (tangent.x == 0 && tangent.y == 0) return rises ? last.theta_high : last.theta_low;
+namespace {
+
+// How far the tangent extension reaches: the angle of the tangent, or less where it passes behind the projector.
+double extension_end(const SurfaceParts& parts, bool rises) {
+  const auto& [point, tangent] = parts.rim;
   const double end = std::atan2(tangent.x, tangent.y);
-  if (!rises || std::isinf(parts_->distance) || tangent.y >= 0) return end;
-  const double r = point.x + (-parts_->distance - point.y) * tangent.x / tangent.y;
-  return std::min(end, std::atan2(r, -parts_->distance));
+  if (std::isinf(parts.distance) || tangent.y >= 0) return end;
+  const double r = point.x + (-parts.distance - point.y) * tangent.x / tangent.y;
+  const double behind = std::atan2(r, -parts.distance);
+  return rises ? std::min(end, behind) : std::max(end, behind);
 }
+
+} // namespace
+
+// theta is continuous along the curve, so its branches leave no gap between them: what is blind lies on one side.
+BlindCone Surface::blind() const {
+  double low = pi, high = 0;
+  for (const Branch& branch : parts_->branches) {
+    low = std::min(low, branch.theta_low);
+    high = std::max(high, branch.theta_high);
+  }
+  const bool ends = parts_->rim.tangent == Vec2(0, 0), rises = parts_->branches.back().orientation > 0;
+  if (low == 0) {
+    if (!ends && rises) high = std::max(high, extension_end(*parts_, rises));
+    return {std::min(high, pi), pi};
+  }
+  if (!ends && !rises) low = std::min(low, extension_end(*parts_, rises));
+  return {0, low};
+}
+
+SurfaceRim Surface::rim() const { return parts_->rim; }
+const std::vector<Kink>& Surface::kinks() const { return parts_->kinks; }
+double Surface::hidden_from() const { return parts_->hidden_from; }
+double Surface::screen_radius() const { return parts_->screen_radius; }
 
 std::optional<Vec2> Surface::meridian(double image_radius) const {
   if (!(image_radius >= 0 && image_radius <= parts_->r_max)) return std::nullopt;

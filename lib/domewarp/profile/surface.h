@@ -11,6 +11,7 @@
 namespace domewarp {
 
 enum class Lens { equidistant, equisolid, stereographic, orthographic };
+const char* to_string(Lens lens);
 
 /// Which crossings of a view ray with a multi-valued curve are drawn.
 enum class BranchChoice { all, first };
@@ -45,6 +46,31 @@ struct Branch {
 /// What stopped the picture from growing beyond r_max.
 enum class RadiusLimit { user, screen, domain, fold, projector, lens };
 const char* to_string(RadiusLimit limit);
+
+/// How the surface fails to be smooth somewhere.
+enum class KinkKind { corner, vertical_tangent, joint };
+const char* to_string(KinkKind kind);
+
+/// A place where the profile curve is continuous but not smooth: a corner, a vertical tangent, a row of a measured
+/// profile.
+struct Kink {
+  double r = 0, z = 0;     ///< on the surface
+  double image_radius = 0; ///< after compensation
+  double theta = 0;        ///< radians
+  KinkKind kind = KinkKind::corner;
+};
+
+/// Directions theta_low..theta_high (radians) in which nothing is shown, not even by the tangent extension. Around the
+/// backward axis on a surface that starts in front of the eye, around the forward axis on one that starts behind.
+struct BlindCone {
+  double theta_low = 0, theta_high = 0;
+};
+
+/// Where the visible part of the surface ends, and how it would go on.
+struct SurfaceRim {
+  Vec2 point{0, 0};   ///< (r, z)
+  Vec2 tangent{0, 0}; ///< (dr, dz), unit, outwards; zero at a fold, where the last ray touches the surface
+};
 
 struct SurfaceParts;
 
@@ -90,9 +116,19 @@ public:
   /// beyond r_max.
   std::optional<Vec2> meridian(double image_radius) const;
 
-  /// The directions that even the tangent extension leaves blind: from this angle to pi when the outermost branch
-  /// rises, from 0 to this angle when it falls.
-  double blind_from() const;
+  /// Empty (both angles pi) when some branch shows the direction straight behind.
+  BlindCone blind() const;
+
+  SurfaceRim rim() const;
+
+  /// Kinks of the visible part, ascending in r, each analysed from the slopes on its two sides.
+  const std::vector<Kink>& kinks() const;
+
+  /// Radius along the curve beyond which the projector lights nothing, because its rays touch the surface there and
+  /// what lies further out is behind it; infinite where it lights the whole surface.
+  double hidden_from() const;
+
+  double screen_radius() const; ///< image radius of the picture's corners, as given
 
 private:
   std::shared_ptr<const SurfaceParts> parts_; ///< immutable, so copies share them

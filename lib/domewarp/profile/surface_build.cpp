@@ -20,6 +20,11 @@ struct Limit {
   RadiusLimit reason;
 };
 
+struct Trace {
+  Limit limit;
+  double hidden_from = infinity;
+};
+
 void require_positive(const char* option, double value) {
   if (value > 0 && std::isfinite(value)) return;
   refuse(option, "must be greater than 0 and finite, got " + to_text(value));
@@ -54,23 +59,24 @@ std::pair<double, double> bisect(const Predicate& exceeds, double hi) {
 }
 
 // How far along the curve the picture goes; `picture` is in image units, the result in the curve's.
-Limit trace_limit(const Curve& curve, double distance, const Limit& picture) {
+Trace trace_limit(const Curve& curve, double distance, const Limit& picture) {
   const bool compensated = std::isfinite(distance);
   double window = picture.radius;
   for (;; window *= 4) {
     double end = find_domain_end(curve, window);
     RadiusLimit reason = end < window ? RadiusLimit::domain : picture.reason;
-    if (!compensated) return {end, reason};
+    if (!compensated) return {{end, reason}};
     const std::vector<double> turns = find_folds(curve, end, distance);
-    if (!turns.empty()) {
-      end = turns.front();
+    const double hidden = turns.empty() ? infinity : turns.front();
+    if (hidden < end) {
+      end = hidden;
       reason = RadiusLimit::projector;
     }
     // True where the compensated radius exceeds the picture's, also behind its pole at f = -distance.
     const auto exceeds = [&](double r) { return r * distance >= picture.radius * (evaluate(curve, r) + distance); };
-    if (exceeds(end)) return {bisect(exceeds, end).first, picture.reason};
-    if (reason != picture.reason) return {end, reason};
-    if (window > reach * picture.radius) return {end, RadiusLimit::projector};
+    if (exceeds(end)) return {{bisect(exceeds, end).first, picture.reason}, hidden};
+    if (reason != picture.reason) return {{end, reason}, hidden};
+    if (window > reach * picture.radius) return {{end, RadiusLimit::projector}, hidden};
   }
 }
 
@@ -109,6 +115,25 @@ std::vector<double> joint_angles(const Curve& curve, const std::vector<double>& 
   return angles;
 }
 
+// Slopes this large are the rounding of the place where the tangent is vertical.
+constexpr double steepest = 1e7;
+
+KinkKind kind_of(const Curve& curve, double r) {
+  if (curve.measured) return KinkKind::joint;
+  const auto steepness = [&](double at) { return std::abs(differentiate(curve, at).d); };
+  const double most = std::max(steepness(std::nextafter(r, 0)), steepness(std::nextafter(r, infinity)));
+  return most < steepest ? KinkKind::corner : KinkKind::vertical_tangent;
+}
+
+std::vector<Kink> describe_kinks(const SurfaceParts& parts, const std::vector<double>& radii) {
+  std::vector<Kink> kinks;
+  for (const double r : radii) {
+    const double z = evaluate(parts.curve, r);
+    kinks.push_back({r, z, compensate(parts.distance, r, z), std::atan2(r, z), kind_of(parts.curve, r)});
+  }
+  return kinks;
+}
+
 // One branch for each stretch between folds; stretches too short to hold a direction are dropped.
 void add_branches(SurfaceParts& parts, const std::vector<double>& ends, const std::vector<double>& kinks) {
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
@@ -126,15 +151,14 @@ void add_branches(SurfaceParts& parts, const std::vector<double>& ends, const st
     refuse(source(parts.options), "the surface shows nothing within an image radius of " + to_text(parts.r_max));
 }
 
-Rim curve_rim(const SurfaceParts& parts) {
+SurfaceRim curve_rim(const SurfaceParts& parts) {
   const Span& last = parts.spans.back();
   const Branch& branch = parts.branches.back();
   const Vec2 point(last.r_high, last.z_high);
   if (last.orientation > 0 ? branch.fold_high : branch.fold_low) return {point, {0, 0}};
   double slope = differentiate(parts.curve, last.r_high).d;
   if (std::isnan(slope)) slope = differentiate(parts.curve, last.r_high * (1 - 1e-12)).d;
-  // A finite slope this large is the rounding of the point where the tangent is vertical.
-  if (std::abs(slope) > 1e7) return {point, {0, slope > 0 ? 1 : -1}};
+  if (std::abs(slope) > steepest) return {point, {0, slope > 0 ? 1 : -1}};
   const double length = std::hypot(1, slope);
   return {point, {1 / length, slope / length}};
 }
@@ -148,9 +172,9 @@ void build_curve(SurfaceParts& parts, const Limit& picture) {
   const SurfaceOptions& options = parts.options;
   parts.curve = options.profile.empty() ? make_curve(options.curve) : make_curve(options.profile, options.profile_name);
   check_start(parts);
-  const Limit traced = trace_limit(parts.curve, parts.distance, picture);
-  double end = traced.radius;
-  RadiusLimit reason = traced.reason;
+  const Trace traced = trace_limit(parts.curve, parts.distance, picture);
+  parts.hidden_from = traced.hidden_from;
+  auto [end, reason] = traced.limit;
   if (!(end > 0)) refuse(source(options), "f(r) is not defined beyond r = 0");
   std::vector<double> folds = find_folds(parts.curve, end, 0);
   if (!folds.empty() && evaluate(parts.curve, 0) < 0)
@@ -165,6 +189,7 @@ void build_curve(SurfaceParts& parts, const Limit& picture) {
   const bool by_picture = reason == picture.reason;
   parts.r_max = by_picture ? picture.radius : compensate(parts.distance, end, evaluate(parts.curve, end));
   std::vector<double> kinks = find_kinks(parts.curve, end);
+  parts.kinks = describe_kinks(parts, kinks);
   std::erase_if(kinks, [&](double r) { return is_among(folds, r, 1e-12 * end); });
   folds.insert(folds.begin(), 0);
   folds.push_back(end);
@@ -204,6 +229,8 @@ Surface::Surface(const SurfaceOptions& options, double screen_radius) {
   check(options, screen_radius);
   const auto parts = std::make_shared<SurfaceParts>();
   parts->options = options;
+  parts->screen_radius = screen_radius;
+  parts->hidden_from = infinity;
   parts->distance = options.projector.value_or(infinity);
   const Limit picture = picture_limit(options, screen_radius);
   options.lens ? build_lens(*parts, picture) : build_curve(*parts, picture);

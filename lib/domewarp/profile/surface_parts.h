@@ -18,24 +18,21 @@ struct Span {
   int orientation = 1;
 };
 
-/// The surface's last point with the direction in which it goes on, for the tangent extension.
-struct Rim {
-  Vec2 point{0, 0};   ///< (r, z)
-  Vec2 tangent{0, 0}; ///< unit, outwards; zero where the last ray touches the curve
-};
-
 /// What a Surface consists of.
 struct SurfaceParts {
   SurfaceOptions options;
   std::optional<LensForm> lens;
   Curve curve;
   double distance = 0; ///< of the projector; infinite without one
+  double screen_radius = 0;
+  double hidden_from = 0; ///< along the curve, see Surface::hidden_from()
   double r_max = 0;
   RadiusLimit limit = RadiusLimit::screen;
   std::vector<Branch> branches;
   std::vector<Span> spans;
   std::vector<std::vector<double>> joints;
-  Rim rim;
+  std::vector<Kink> kinks;
+  SurfaceRim rim;
 };
 
 /// R and z along the branch, before the projector's compensation, with derivatives in theta.

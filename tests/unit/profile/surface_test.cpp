@@ -124,7 +124,7 @@ TEST(Surface, ALensAndItsProfileCurveAreTheSameSurface) {
       const Surface a(lens, corner), b(curve, corner);
       EXPECT_NEAR(a.r_max(), b.r_max(), 1e-15);
       EXPECT_NEAR(a.branches()[0].theta_high, b.branches()[0].theta_high, 1e-14);
-      EXPECT_NEAR(a.blind_from(), b.blind_from(), 1e-12);
+      EXPECT_NEAR(a.blind().theta_low, b.blind().theta_low, 1e-12);
       for (double theta = 0; theta < a.branches()[0].theta_high; theta += 0.01) {
         const double s = std::sin(theta), c = std::cos(theta);
         EXPECT_NEAR(a.radius(0, s, c), b.radius(0, s, c), 2e-15);
@@ -202,10 +202,10 @@ TEST(Surface, AVerticalTangentHasSmoothSlopes) {
 TEST(Surface, TheTangentExtensionIsThatOfEquation16) {
   const Surface surface(curve_options("1-r^2"), corner);
   const double slope = -2 * corner, z = 1 - corner * corner;
-  EXPECT_NEAR(surface.blind_from(), pi / 2 - std::atan(slope), 1e-14);
+  EXPECT_NEAR(surface.blind().theta_low, pi / 2 - std::atan(slope), 1e-14);
   for (double theta = surface.branches()[0].theta_high + 1e-6; theta < pi; theta += 0.01) {
     const auto radius = surface.extended_radius(std::sin(theta), std::cos(theta));
-    ASSERT_EQ(radius.has_value(), theta < surface.blind_from()) << theta;
+    ASSERT_EQ(radius.has_value(), theta < surface.blind().theta_low) << theta;
     if (radius) {
       EXPECT_NEAR(*radius, (slope * corner - z) / (slope - 1 / std::tan(theta)), 1e-12 * *radius * *radius);
     }
@@ -215,7 +215,7 @@ TEST(Surface, TheTangentExtensionIsThatOfEquation16) {
 
 TEST(Surface, AVerticalTangentExtendsAlongItself) {
   const Surface surface(curve_options("sqrt(1-r^2)"), corner);
-  EXPECT_EQ(surface.blind_from(), pi);
+  EXPECT_EQ(surface.blind().theta_low, pi);
   for (const double theta : {1.6, 2.0, 3.0, 3.14})
     EXPECT_NEAR(*surface.extended_radius(std::sin(theta), std::cos(theta)), 1, 1e-15);
   EXPECT_FALSE(surface.extended_radius(0, -1));
@@ -226,7 +226,7 @@ TEST(Surface, BeyondAFoldAllIsBlind) {
   options.branches = BranchChoice::first;
   const Surface surface(options, 3);
   const double end = surface.branches()[0].theta_high;
-  EXPECT_EQ(surface.blind_from(), end);
+  EXPECT_EQ(surface.blind().theta_low, end);
   for (double theta = end + 1e-9; theta <= pi; theta += 0.01)
     EXPECT_FALSE(surface.extended_radius(std::sin(theta), std::cos(theta))) << "erratum 8: the image centre";
 }
@@ -235,7 +235,7 @@ TEST(Surface, AFlatPictureIsRectilinear) {
   const Surface surface(curve_options("1"), corner);
   for (double theta = 0; theta < 1; theta += 0.01)
     EXPECT_NEAR(surface.radius(0, std::sin(theta), std::cos(theta)), std::tan(theta), 4e-16 * (1 + std::tan(theta)));
-  EXPECT_NEAR(surface.blind_from(), pi / 2, 1e-15);
+  EXPECT_NEAR(surface.blind().theta_low, pi / 2, 1e-15);
 }
 
 TEST(Surface, ARemovableSingularityOnTheAxisIsRemoved) {

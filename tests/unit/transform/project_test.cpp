@@ -75,7 +75,7 @@ TEST(Project, NothingIsSeenBeyondRMax) {
 TEST(Project, StatesAreThoseOfTheAngle) {
   const Surface surface = curve_surface("1-r^2");
   const ImageMap map = make_image_map(surface, Method::automatic);
-  const double end = surface.branches()[0].theta_high, blind = surface.blind_from();
+  const double end = surface.branches()[0].theta_high, blind = surface.blind().theta_low;
   for (double theta = 0; theta <= pi; theta += 0.003) {
     const ImagePoint point = project(surface, map, 3.0 * towards(theta, 1));
     EXPECT_EQ(point.state, theta < end     ? PointState::visible
