@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,5 +23,10 @@ struct TJunction {
 ///                  float32 units in the last place: what a modeller's rounding leaves
 /// @return sorted by edge, then by t
 std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const MeshTopology& topology, double tolerance = 1e-6);
+
+/// Pairs of different points, ends of open edges, so close that they were probably meant to be one: within eight float32
+/// units in the last place of their coordinates. The warp keeps whatever gap there is between them.
+/// @param offset size of what was subtracted from the coordinates since they were float32, scene units
+std::size_t count_near_misses(std::span<const Vec3> points, const MeshTopology& topology, double offset);
 
 } // namespace domewarp

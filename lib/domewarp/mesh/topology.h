@@ -17,14 +17,16 @@ struct MeshTopology {
     std::uint32_t a = 0, b = 0; ///< point ids, a < b
     std::uint32_t faces = 0;    ///< how many triangles use it: 1 open, 2 regular, more non-manifold
   };
-  std::vector<Edge> edges;
+  std::vector<Edge> edges;      ///< sorted by a, then b
   std::vector<std::array<std::uint32_t, 3>> edges_of; ///< per triangle: edge from corner i to corner i + 1
 };
 
-/// Builds the half-edge structure (OpenMesh) of welded triangles and reads one edge record per pair of points from it.
-/// Edges of three or more faces, Moebius strips, bow-ties, mirrored and duplicate faces are fine: a face that a
-/// half-edge structure cannot take joins through points of its own, and edges between the same points share one record.
+/// Matches the sides of welded triangles. Edges of three or more faces, Moebius strips, bow-ties, mirrored and duplicate
+/// faces are edges like any other. Parallel; the same for any number of threads.
 /// @param point_count every id in `triangles` is below it
 MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles);
+
+/// Drops the triangles whose flag is 0, and the edges that only they had.
+MeshTopology keep_faces(const MeshTopology& topology, std::span<const std::uint8_t> kept);
 
 } // namespace domewarp

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <random>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "domewarp/core/parallel.h"
+#include "domewarp/mesh/half_edges.h"
+#include "domewarp/mesh/point_tree.h"
 #include "domewarp/mesh/t_junctions.h"
 #include "domewarp/mesh/topology.h"
 #include "domewarp/mesh/weld.h"
@@ -23,6 +32,86 @@ TEST(Weld, JoinsEqualBitsAndBothZerosAndNothingElse) {
   const Weld welded = weld(positions);
   EXPECT_EQ(welded.points.size(), 2u);
   EXPECT_EQ(welded.point_of, (std::vector<std::uint32_t>{0, 0, 1, 0}));
+}
+
+/// Positions with many equal ones, far apart in the input.
+std::vector<Vec3> repeated_positions(std::size_t count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> coordinate(-40, 40);
+  std::vector<Vec3> positions;
+  for (std::size_t i = 0; i < count; ++i) positions.emplace_back(coordinate(random), coordinate(random), 0.1 * coordinate(random));
+  return positions;
+}
+
+TEST(Weld, AgreesWithAMapForAnyNumberOfThreads) {
+  const std::uint32_t seed = 20011;
+  const std::vector<Vec3> positions = repeated_positions(300'000, seed);
+  std::map<std::array<double, 3>, std::uint32_t> ids;
+  std::vector<std::uint32_t> expected;
+  for (const Vec3& p : positions)
+    expected.push_back(ids.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, static_cast<std::uint32_t>(ids.size())).first->second);
+  for (const int threads : {1, 2, 8}) {
+    const ThreadLimit limit(threads);
+    const Weld welded = weld(positions);
+    EXPECT_EQ(welded.point_of, expected) << threads << " threads, seed " << seed;
+    EXPECT_EQ(welded.points.size(), ids.size());
+  }
+}
+
+TEST(Weld, SnapJoinsChainsOfNearPointsAtTheOneThatPrecedes) {
+  // A corner modelled three times, each 0.6 mm beside the last, and one 2 mm away.
+  const std::vector<Vec3> positions = {{0.0006, 0, 0}, {0.0012, 0, 0}, {0, 0, 0}, {0.0032, 0, 0}};
+  for (const std::vector<std::size_t>& order : {std::vector<std::size_t>{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 3, 0, 2}}) {
+    std::vector<Vec3> shuffled;
+    for (const std::size_t i : order) shuffled.push_back(positions[i]);
+    Weld welded = weld(shuffled);
+    EXPECT_EQ(snap(welded, 0.001), 2u);
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(welded.points[welded.point_of[i]], order[i] == 3 ? positions[3] : positions[2]);
+  }
+}
+
+TEST(Weld, SnapLeavesPointsFartherApartAlone) {
+  Weld welded = weld(std::vector<Vec3>{{0, 0, 0}, {0.0011, 0, 0}});
+  EXPECT_EQ(snap(welded, 0.001), 0u);
+}
+
+TEST(PointTree, FindsWhatBruteForceFinds) {
+  const std::uint32_t seed = 7;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  const auto draw = [&] { return Vec3(coordinate(random), coordinate(random), coordinate(random)); };
+  std::vector<Vec3> points(2000);
+  for (Vec3& p : points) p = draw();
+  std::vector<std::uint32_t> ids(points.size());
+  std::iota(ids.begin(), ids.end(), 0u);
+  const PointTree tree(points, ids);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 a = draw(), b = trial % 4 == 0 ? a : trial % 4 == 1 ? Vec3(a.x, a.y, 1) : draw();
+    const auto is_near = [&](std::uint32_t id) {
+      const Vec3 d = b - a;
+      const double t = a == b ? 0 : std::clamp(glm::dot(points[id] - a, d) / glm::dot(d, d), 0.0, 1.0);
+      return glm::length(points[id] - (a + t * d)) <= 0.05;
+    };
+    std::vector<std::uint32_t> found, expected;
+    tree.visit_near_segment(a, b, 0.05, [&](std::uint32_t id) {
+      if (is_near(id)) found.push_back(id);
+    });
+    std::copy_if(ids.begin(), ids.end(), std::back_inserter(expected), is_near);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected) << "trial " << trial << ", seed " << seed;
+  }
+}
+
+TEST(NearMisses, CountsCornersThatTwoMatricesRoundedDifferently) {
+  // Two quads that should share an edge; the second's corners came through another matrix and are one float32 unit off.
+  const double off = std::nextafter(2.0f, 3.0f) - 2.0f;
+  const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2 + off, 0, 0}, {4, 0, 0}, {2 + off, 2, 0}};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
+  EXPECT_EQ(count_near_misses(points, build_topology(6, triangles), 0), 2u);
+  std::vector<Vec3> apart = points;
+  apart[3].x = apart[5].x = 2.001;
+  EXPECT_EQ(count_near_misses(apart, build_topology(6, triangles), 0), 0u);
 }
 
 TEST(Topology, ThreeTrianglesOnOneEdgeShareItsRecord) {
@@ -56,6 +145,52 @@ TEST(Topology, BowTiesDuplicatesAndMirroredFacesAreTaken) {
       const auto& edge = topology.edges[topology.edges_of[f][k]];
       EXPECT_EQ(std::minmax(soup[f][k], soup[f][(k + 1) % 3]), std::minmax(edge.a, edge.b));
     }
+}
+
+TEST(Topology, IsTheSameForAnyNumberOfThreads) {
+  const std::uint32_t seed = 5;
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<std::uint32_t> id(0, 4999);
+  std::vector<Triangle> triangles;
+  while (triangles.size() < 60'000) {
+    const Triangle t{id(random), id(random), id(random)};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+  const auto build = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return build_topology(5000, triangles);
+  };
+  const MeshTopology one = build(1), eight = build(8);
+  EXPECT_EQ(one.edges_of, eight.edges_of) << "seed " << seed;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> expected;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++expected[std::minmax({t[k], t[(k + 1) % 3]})];
+  ASSERT_EQ(one.edges.size(), expected.size());
+  for (const auto& edge : one.edges) EXPECT_EQ(edge.faces, expected.at({edge.a, edge.b}));
+}
+
+TEST(Topology, KeepingSomeFacesIsBuildingThemAlone) {
+  const std::vector<Triangle> soup = {{0, 1, 2}, {2, 1, 3}, {3, 1, 4}, {0, 1, 4}};
+  const std::vector<std::uint8_t> kept = {1, 0, 1, 1};
+  const MeshTopology expected = build_topology(5, std::vector<Triangle>{soup[0], soup[2], soup[3]});
+  const MeshTopology got = keep_faces(build_topology(5, soup), kept);
+  EXPECT_EQ(got.edges_of, expected.edges_of);
+  EXPECT_EQ(face_counts(got), face_counts(expected));
+}
+
+TEST(HalfEdges, KnowLoopsAndEulerCharacteristic) {
+  const std::vector<Triangle> disc = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+  EXPECT_EQ(walk_half_edges(6, disc).boundary_loops, 1u);
+  EXPECT_EQ(walk_half_edges(6, disc).euler_characteristic(), 1);
+  const std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  EXPECT_EQ(walk_half_edges(4, tetrahedron).boundary_loops, 0u);
+  EXPECT_EQ(walk_half_edges(4, tetrahedron).euler_characteristic(), 2);
+  const std::vector<Triangle> opened = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}};
+  EXPECT_EQ(walk_half_edges(4, opened).boundary_loops, 1u);
+}
+
+TEST(HalfEdges, DetachAThirdFaceOnAnEdge) {
+  EXPECT_EQ(walk_half_edges(5, std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}).detached_faces, 1u);
 }
 
 TEST(TJunctions, FindsTheVertexInsideAnOpenEdgeAndOnlyThat) {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "domewarp/core/vectors.h"
+
+namespace domewarp {
+
+/// A set of points, halved again and again along the longest axis of its box, for questions of nearness.
+class PointTree {
+public:
+  /// @param points must outlive the tree
+  /// @param ids which of them, finite ones only
+  PointTree(std::span<const Vec3> points, std::vector<std::uint32_t> ids);
+
+  /// Calls visit(id) for every point within `reach` of the segment from a to b, and some farther ones. The order is a
+  /// function of the tree alone.
+  void visit_near_segment(const Vec3& a, const Vec3& b, double reach, const std::function<void(std::uint32_t)>& visit) const;
+
+  std::span<const Vec3> points() const { return points_; }
+  std::span<const std::uint32_t> ids() const { return ids_; }
+
+private:
+  struct Node {
+    Vec3 low, high;
+    std::uint32_t begin = 0, end = 0; ///< into ids_
+    std::uint32_t right = 0;          ///< 0 for a leaf; the left child follows its parent
+  };
+
+  void build(std::uint32_t begin, std::uint32_t end);
+
+  std::span<const Vec3> points_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Node> nodes_;
+};
+
+/// Every pair of the tree's points that are at most reach(point) of either apart, the lower id first, sorted.
+/// @param reach >= 0, of a point
+std::vector<std::array<std::uint32_t, 2>> near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach);
+
+} // namespace domewarp
