@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -138,6 +139,17 @@ void add_method_option(CLI::App& app, Method& method) {
                      {{"auto", Method::automatic}, {"direct", Method::direct}, {"lut", Method::table}}, [&method](Method m) { method = m; });
 }
 
+/// May be given several times.
+void add_no_skip_option(CLI::App& app, SkipOptions& skip) {
+  const std::map<std::string, bool SkipOptions::*> names = {{"outside-view", &SkipOptions::outside_view},
+                                                            {"back-faces", &SkipOptions::back_faces},
+                                                            {"zero-area", &SkipOptions::zero_area},
+                                                            {"whole-meshes", &SkipOptions::whole_meshes}};
+  add_choice<bool SkipOptions::*>(app, "--no-skip", "Do work that the picture does not need, to measure what skipping it saves; may be repeated",
+                                  names, [&skip](bool SkipOptions::*member) { skip.*member = false; })
+      ->trigger_on_parse();
+}
+
 void add_quality_options(CLI::App& app, RefineOptions& refine) {
   auto* group = app.add_option_group("Quality");
   add(*group, "--tolerance", "Largest displacement of any drawn point, pixels (default 0.5)", "PX",
@@ -148,9 +160,16 @@ void add_quality_options(CLI::App& app, RefineOptions& refine) {
       [&refine](const std::string& text) { refine.near = parse_positive("--near", text); });
   add(*group, "--max-triangles", "Stop refinement there, say so and exit with 3 (default 50000000)", "N",
       [&refine](const std::string& text) { refine.max_triangles = parse_count("--max-triangles", text); });
-  add_choice<bool>(*group, "--subdivide", "adaptive: as the tolerance needs; none: only clip (default adaptive)",
-                   {{"adaptive", true}, {"none", false}}, [&refine](bool subdivide) { refine.subdivide = subdivide; });
-  group->add_flag("!--keep-back-faces", refine.cull_back_faces, "Keep faces of single-sided materials that are seen from behind");
+  add_choice<Subdivision>(*group, "--subdivide", "adaptive: as the tolerance needs; isotropic: the thesis' recursion; none: only clip (default adaptive)",
+                          {{"adaptive", Subdivision::adaptive}, {"isotropic", Subdivision::isotropic}, {"none", Subdivision::none}},
+                          [&refine](Subdivision subdivision) { refine.subdivision = subdivision; });
+  add(*group, "--threshold", "Longest edge that --subdivide isotropic leaves, image units (default 0.1)", "T",
+      [&refine](const std::string& text) { refine.isotropic.threshold = parse_positive("--threshold", text); });
+  add(*group, "--max-lod", "How often --subdivide isotropic divides a triangle at most, 0 to 12 (default 9)", "N",
+      [&refine](const std::string& text) { refine.isotropic.max_lod = static_cast<int>(std::min<std::size_t>(parse_count("--max-lod", text), 1000)); });
+  add(*group, "--weld", "Join positions this near, scene units (default: only those equal to the bit)", "D",
+      [&refine](const std::string& text) { refine.weld = parse_positive("--weld", text); });
+  add_no_skip_option(*group, refine.skip);
 }
 
 void add_output_options(CLI::App& app, ConvertOptions& options) {

@@ -63,7 +63,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& 
 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {
   return report.refine.limits_hit.empty() && report.refine.open_edges == 0 &&
-         (!options.refine.subdivide || report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6));
+         (options.refine.subdivision != Subdivision::adaptive || report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6));
 }
 
 } // namespace domewarp

@@ -2,6 +2,7 @@
 #include "domewarp/convert/record.h"
 
 #include <array>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,8 @@ namespace domewarp {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(); ///< null in JSON
 
 constexpr std::array<const char*, 4> lens_names = {"equidistant", "equisolid", "stereographic", "orthographic"};
 
@@ -104,7 +107,7 @@ Record parse_record(const std::string& text, const std::string& name) {
     record.tolerance_px = json.at("tolerance_px").get<double>();
     record.near = json.value("near", 0.0);
     record.unlit = json.value("unlit", false);
-    record.error_px = json.value("error_px", 0.0);
+    record.error_px = json.contains("error_px") && json["error_px"].is_number() ? json["error_px"].get<double>() : nan;
     return record;
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::input, name + ": asset.extras.domewarp cannot be understood: " + error.what());

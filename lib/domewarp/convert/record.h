@@ -18,7 +18,7 @@ struct Record {
   double tolerance_px = 0;
   double near = 0;
   bool unlit = false;
-  double error_px = 0;           ///< certified
+  double error_px = 0;           ///< certified; nan when nothing bounds it
   std::size_t triangles_in = 0, triangles_out = 0, vertices = 0;
 };
 

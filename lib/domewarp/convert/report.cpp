@@ -31,31 +31,67 @@ Json branches_json(const ConvertReport& report) {
   return branches;
 }
 
+std::size_t culled(const SkipReport& skipped) {
+  return skipped.outside_view + skipped.back_faces + skipped.degenerate + skipped.off_picture + skipped.zero_area;
+}
+
+/// Counts, and under "share" the same over the triangles they are counted among: those of the source, or those refined.
+Json skipped_json(const RefineReport& refine) {
+  const SkipReport& skipped = refine.skipped;
+  const std::size_t refined = refine.triangles_out + skipped.off_picture + skipped.zero_area;
+  Json json, share;
+  const auto add = [&](const char* name, std::size_t count, std::size_t among) {
+    json[name] = count;
+    share[name] = among > 0 ? static_cast<double>(count) / static_cast<double>(among) : 0.0;
+  };
+  add("outside_view", skipped.outside_view, refine.triangles_in);
+  add("back_faces", skipped.back_faces, refine.triangles_in);
+  add("degenerate", skipped.degenerate, refine.triangles_in);
+  add("off_picture", skipped.off_picture, refined);
+  add("zero_area", skipped.zero_area, refined);
+  add("whole_meshes", skipped.whole_meshes, refine.triangles_in);
+  json["share"] = share;
+  return json;
+}
+
+/// Null where nobody counted: the thesis' recursion keeps no edges.
+Json cracks_json(const RefineReport& refine, Subdivision subdivision) {
+  if (subdivision == Subdivision::isotropic) return nullptr;
+  return {{"open_edges", refine.open_edges},
+          {"open_edges_in", refine.open_edges_in},
+          {"t_junctions_in", refine.t_junctions_in},
+          {"t_junctions_out", refine.t_junctions_out},
+          {"near_misses", refine.near_misses},
+          {"snapped", refine.snapped},
+          {"max_gap_px", refine.max_gap_px}};
+}
+
 } // namespace
 
 std::string to_json(const ConvertReport& report, const ConvertOptions& options) {
   const RefineReport& refine = report.refine;
   Json json;
   json["triangles"] = {{"input", refine.triangles_in},
-                       {"culled", refine.back_faces + refine.degenerate + refine.triangles_off_picture},
+                       {"culled", culled(refine.skipped)},
                        {"clipped", refine.triangles_clipped},
                        {"output", refine.triangles_out}};
   json["vertices"] = refine.vertices;
   json["tolerance_px"] = options.refine.tolerance_px;
   json["error_px"] = {{"max", refine.error_px_max}, {"p99", refine.error_px_p99}, {"mean", refine.error_px_mean}};
   json["depth_error_rel"] = {{"max", refine.depth_error_max}};
-  json["cracks"] = {{"open_edges", refine.open_edges},
-                    {"open_edges_in", refine.open_edges_in},
-                    {"t_junctions_in", refine.t_junctions_in},
-                    {"t_junctions_out", refine.t_junctions_out},
-                    {"max_gap_px", refine.max_gap_px}};
-  json["skipped"] = {{"back_faces", refine.back_faces},
-                     {"degenerate", refine.degenerate},
-                     {"off_picture", refine.triangles_off_picture}};
+  json["cracks"] = cracks_json(refine, options.refine.subdivision);
+  json["skipped"] = skipped_json(refine);
   json["refinement"] = {{"levels", refine.levels},
                         {"map_evaluations", refine.map_evaluations},
                         {"uncertified_edges", refine.uncertified_edges},
                         {"near", refine.near}};
+  if (options.refine.subdivision == Subdivision::isotropic)
+    json["isotropic"] = {{"threshold", options.refine.isotropic.threshold},
+                         {"max_lod", options.refine.isotropic.max_lod},
+                         {"points", refine.isotropic.points},
+                         {"points_computed", refine.isotropic.points_computed},
+                         {"divisions", refine.isotropic.divisions},
+                         {"invisible", refine.isotropic.invisible}};
   json["time_ms"] = {{"map", report.map_ms},
                      {"topology", refine.soup_ms},
                      {"refine", refine.levels_ms},
@@ -76,13 +112,18 @@ std::string to_text(const ConvertReport& report, const ConvertOptions& options) 
   const RefineReport& refine = report.refine;
   std::ostringstream text;
   text << "triangles   " << refine.triangles_in << " in, " << refine.triangles_out << " out ("
-       << refine.back_faces + refine.degenerate + refine.triangles_off_picture << " culled, " << refine.triangles_clipped
+       << culled(refine.skipped) << " culled, " << refine.triangles_clipped
        << " clipped), " << refine.vertices << " vertices\n"
-       << std::setprecision(3) << "error       at most " << refine.error_px_max << " px (tolerance " << options.refine.tolerance_px
-       << "), mean " << refine.error_px_mean << " px; depth " << 100 * refine.depth_error_max << " %\n"
-       << "cracks      " << refine.open_edges << " open edges that the source did not have; " << refine.t_junctions_in
-       << " T-junctions of the source mended\n"
-       << std::fixed << std::setprecision(0) << "time        " << report.total_ms << " ms, peak memory " << report.peak_memory_mb << " MB\n";
+       << std::setprecision(3);
+  if (options.refine.subdivision == Subdivision::isotropic)
+    text << "isotropic   " << refine.isotropic.points << " points as the thesis counts them, " << refine.isotropic.divisions
+         << " divisions; neither error nor cracks are bounded\n";
+  else
+    text << "error       at most " << refine.error_px_max << " px (tolerance " << options.refine.tolerance_px << "), mean "
+         << refine.error_px_mean << " px; depth " << 100 * refine.depth_error_max << " %\n"
+         << "cracks      " << refine.open_edges << " open edges that the source did not have; " << refine.t_junctions_in
+         << " T-junctions of the source mended\n";
+  text << std::fixed << std::setprecision(0) << "time        " << report.total_ms << " ms, peak memory " << report.peak_memory_mb << " MB\n";
   for (const std::string& limit : refine.limits_hit) text << "stopped by  " << limit << "\n";
   return text.str();
 }

@@ -135,6 +135,7 @@ private:
 
 struct PartOutput {
   Primitive primitive;
+  std::size_t zero_area = 0;
   double smallest_depth = std::numeric_limits<double>::infinity(), largest_depth = 0;
 };
 
@@ -163,6 +164,10 @@ public:
     scratch_.resize(values_.stride(part));
     for (const std::uint32_t f : faces) {
       const RefinedFace& face = refined_.faces[f];
+      if (options_.skip.zero_area && has_equal_corners(face)) {
+        ++out.zero_area;
+        continue;
+      }
       for (int k = 0; k < 3; ++k) {
         const int corner = orientation < 0 ? 2 - k : k;
         out.primitive.indices.push_back(vertex(face.wedge[corner], face.point[corner], source, out));
@@ -172,6 +177,12 @@ public:
   }
 
 private:
+  bool has_equal_corners(const RefinedFace& face) const {
+    const auto position = [&](int k) { return warped_position(refined_.points[face.point[k]], options_.projection); };
+    const Vec3f a = position(0), b = position(1), c = position(2);
+    return a == b || b == c || c == a;
+  }
+
   std::uint32_t vertex(std::uint32_t wedge, std::uint32_t point, const Primitive& source, PartOutput& out) {
     std::uint32_t& id = vertex_of_[wedge];
     if (id != unused) return id;
@@ -209,16 +220,18 @@ private:
 
 } // namespace
 
+double picture_margin(const RefineOptions& options, const Raster& raster) { return (options.tolerance_px + 1) * pixel_size(raster); }
+
 void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedMesh& refined, int orientation,
           const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report) {
-  const double margin = (options.tolerance_px + 1) * pixel_size(raster);
+  const double margin = picture_margin(options, raster);
   const Vec2 half_extent(aspect(raster) + margin, 1 + margin);
   std::vector<std::vector<std::uint32_t>> faces_of(soup.parts.size());
   std::vector<std::uint8_t> drawn(soup.wedge_point.size() + soup.extra_wedges.size() + refined.wedges.size(), 0);
   for (std::uint32_t f = 0; f < refined.faces.size(); ++f) {
     const RefinedFace& face = refined.faces[f];
     if (is_off_picture(refined, face, half_extent)) {
-      ++report.triangles_off_picture;
+      ++report.skipped.off_picture;
       continue;
     }
     faces_of[soup.faces[face.source].part].push_back(f);
@@ -234,6 +247,7 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
   });
   for (std::size_t part = 0; part < outputs.size(); ++part) {
     PartOutput& output = outputs[part];
+    report.skipped.zero_area += output.zero_area;
     if (output.primitive.indices.empty()) continue;
     report.triangles_out += output.primitive.indices.size() / 3;
     report.vertices += output.primitive.positions.size();

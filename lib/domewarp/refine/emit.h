@@ -16,6 +16,9 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
 void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegion& region, const Raster& raster,
                  RefineReport& report);
 
+/// Faces this far outside the image rectangle are dropped, image units.
+double picture_margin(const RefineOptions& options, const Raster& raster);
+
 /// The camera that shows the picture, from the depths that were written.
 Camera picture_camera(const Raster& raster, Projection projection, double smallest_depth, double largest_depth);
 

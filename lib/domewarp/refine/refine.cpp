@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -40,7 +41,11 @@ void check(const RefineOptions& options) {
   };
   positive(options.tolerance_px, "--tolerance");
   positive(options.depth_tolerance, "--depth-tolerance");
+  positive(options.isotropic.threshold, "--threshold");
+  if (options.isotropic.max_lod < 0 || options.isotropic.max_lod > 12)
+    throw Error(ErrorCode::usage, "--max-lod: must be from 0 to 12, got " + std::to_string(options.isotropic.max_lod));
   if (options.near != 0) positive(options.near, "--near");
+  if (options.weld != 0) positive(options.weld, "--weld");
 }
 
 double extent(const Soup& soup) {
@@ -67,24 +72,52 @@ Scene empty_copy(const Scene& scene) {
   return out;
 }
 
+/// All branches at once: each point appears on the first that shows it.
+void refine_isotropic(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+                      const RefineOptions& options, Scene& out, RefineReport& report) {
+  Stopwatch watch;
+  const Soup soup = make_loose_soup(scene, view);
+  report.triangles_in = soup.source_triangles;
+  report.near = options.near > 0 ? options.near : std::max(1e-5 * extent(soup), 1e-30);
+  report.soup_ms = watch.lap();
+  const RefinedMesh mesh = subdivide_isotropic(soup, surface, map, options.projection, options.isotropic, options.max_triangles, report.isotropic);
+  report.levels = mesh.levels;
+  report.map_evaluations = mesh.evaluations;
+  report.triangles_clipped = report.isotropic.invisible;
+  if (report.isotropic.stopped) report.limits_hit.push_back("max-triangles");
+  report.error_px_max = report.error_px_p99 = report.error_px_mean = report.depth_error_max = std::numeric_limits<double>::quiet_NaN();
+  report.levels_ms = watch.lap();
+  emit(scene, view, soup, mesh, map.branches.front().branch().orientation, raster, options, out, report);
+  report.emit_ms = watch.lap();
+}
+
 } // namespace
 
 Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
              const RefineOptions& options, RefineReport& report) {
   check(options);
+  Scene out = empty_copy(scene);
+  if (options.subdivision == Subdivision::isotropic) {
+    refine_isotropic(scene, view, surface, map, raster, options, out, report);
+    out.cameras = {picture_camera(raster, options.projection, report.smallest_depth, report.largest_depth)};
+    return out;
+  }
   Stopwatch watch;
-  const Soup soup = make_soup(scene, view, {options.cull_back_faces});
+  const ViewCull cull(surface, raster, picture_margin(options, raster));
+  const Soup soup = make_soup(scene, view, {options.skip.back_faces, options.weld, options.skip.outside_view ? &cull : nullptr});
   report.triangles_in = soup.source_triangles;
-  report.degenerate = soup.degenerate_triangles;
-  report.back_faces = soup.back_faces;
+  report.skipped.outside_view = soup.outside_view;
+  report.skipped.degenerate = soup.degenerate_triangles;
+  report.skipped.back_faces = soup.back_faces;
+  report.near_misses = soup.near_misses;
+  report.snapped = soup.snapped;
   report.t_junctions_in = soup.t_junctions;
   report.open_edges_in = soup.open_edges;
   report.near = options.near > 0 ? options.near : std::max(1e-5 * extent(soup), 1e-30);
   report.soup_ms = watch.lap();
 
-  Scene out = empty_copy(scene);
   OracleOptions oracle_options{working_share * options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
-  if (!options.subdivide) oracle_options.tolerance = oracle_options.depth_tolerance = 1e30;
+  if (options.subdivision == Subdivision::none) oracle_options.tolerance = oracle_options.depth_tolerance = 1e30;
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options);

@@ -7,12 +7,20 @@
 
 #include "domewarp/profile/surface.h"
 #include "domewarp/refine/error_bound.h"
+#include "domewarp/refine/isotropic.h"
+#include "domewarp/refine/skips.h"
 #include "domewarp/scene/raster.h"
 #include "domewarp/scene/scene.h"
 #include "domewarp/scene/view.h"
 #include "domewarp/transform/image_map.h"
 
 namespace domewarp {
+
+enum class Subdivision {
+  adaptive,  ///< as the tolerance needs
+  isotropic, ///< the thesis' recursion by edge length (isotropic.h): cracks and loses triangles
+  none,      ///< only clip (error as it comes)
+};
 
 struct RefineOptions {
   double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
@@ -21,28 +29,31 @@ struct RefineOptions {
   double near = 0;                   ///< nothing nearer to the eye is drawn; 0: 1e-5 of the scene's extent
   std::size_t max_triangles = 50'000'000; ///< refinement stops here and says so
   bool source_attributes = false;    ///< adds _SOURCE_POSITION (eye space)
-  bool cull_back_faces = true;       ///< drop faces of single-sided materials that the eye sees from behind
-  bool subdivide = true;             ///< false: only clip (error as it comes)
+  double weld = 0;                   ///< positions this near are joined, scene units; 0: only those equal to the bit
+  SkipOptions skip;
+  Subdivision subdivision = Subdivision::adaptive;
+  IsotropicOptions isotropic;        ///< for Subdivision::isotropic
 };
 
 struct RefineReport {
   std::size_t triangles_in = 0;      ///< drawn by the source
   std::size_t triangles_out = 0;
   std::size_t triangles_clipped = 0; ///< pieces outside the visible cones or inside the near sphere
-  std::size_t triangles_off_picture = 0; ///< outside the image rectangle
-  std::size_t back_faces = 0;
-  std::size_t degenerate = 0;        ///< two corners at one position
+  SkipReport skipped;
   std::size_t vertices = 0;
   std::size_t map_evaluations = 0;
   std::size_t levels = 0;            ///< of refinement, the deepest branch
-  double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn
+  double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn; nan when nothing bounds them
   double depth_error_max = 0;
   std::size_t uncertified_edges = 0; ///< no finite bound exists there: judged by samples
   std::size_t t_junctions_in = 0;    ///< of the source, mended
   std::size_t t_junctions_out = 0;
+  std::size_t near_misses = 0;       ///< pairs of ends of open edges of the source that are nearly but not equal
+  std::size_t snapped = 0;           ///< points moved by RefineOptions::weld
   std::size_t open_edges_in = 0;     ///< of the source
   std::size_t open_edges = 0;        ///< drawn edges with one face that neither the source, the clip nor a culled face explains
   double max_gap_px = 0;             ///< widest gap that such edges can show: twice their error bound
+  IsotropicReport isotropic;         ///< of Subdivision::isotropic, which bounds no error
   double near = 0;
   double smallest_depth = 0, largest_depth = 0; ///< of the depth coordinate written
   std::vector<std::string> limits_hit;

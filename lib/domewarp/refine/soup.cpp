@@ -2,7 +2,10 @@
 #include "domewarp/refine/soup.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
@@ -17,18 +20,56 @@ const Primitive& primitive_of(const Scene& scene, const Part& part) {
   return scene.meshes[scene.instances[part.instance].mesh].primitives[part.primitive];
 }
 
-std::vector<Part> list_parts(const Scene& scene, std::size_t& wedges) {
+Box box_of(const std::vector<Vec3f>& positions) {
+  Vec3f low = positions.front(), high = low;
+  for (const Vec3f& p : positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  return {Vec3(low), Vec3(high)};
+}
+
+/// One box per primitive of each mesh; instances share them.
+std::vector<std::vector<Box>> boxes_of(const Scene& scene) {
+  std::vector<std::vector<Box>> boxes(scene.meshes.size());
+  parallel_each(boxes.size(), 1, [&](std::size_t m) {
+    for (const Primitive& primitive : scene.meshes[m].primitives)
+      boxes[m].push_back(primitive.positions.empty() ? Box{} : box_of(primitive.positions));
+  });
+  return boxes;
+}
+
+/// Drops the parts that cannot be seen.
+void cull_parts(const Scene& scene, const View& view, const ViewCull& cull, Soup& soup) {
+  const std::vector<std::vector<Box>> boxes = boxes_of(scene);
+  std::erase_if(soup.parts, [&](const Part& part) {
+    const Instance& instance = scene.instances[part.instance];
+    if (cull.may_be_seen(bounding_ball(boxes[instance.mesh][part.primitive], instance.world, view))) return false;
+    soup.outside_view += primitive_of(scene, part).indices.size() / 3;
+    return true;
+  });
+}
+
+std::vector<Part> list_parts(const Scene& scene) {
   std::vector<Part> parts;
-  wedges = 0;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     for (int p = 0; p < static_cast<int>(mesh.primitives.size()); ++p) {
       if (mesh.primitives[p].topology != Topology::triangles) continue;
-      parts.push_back({i, p, static_cast<std::uint32_t>(wedges)});
-      wedges += mesh.primitives[p].positions.size();
+      parts.push_back({i, p, 0});
     }
   }
   return parts;
+}
+
+/// Numbers the wedges part by part. Returns how many there are.
+std::size_t number_wedges(const Scene& scene, std::vector<Part>& parts) {
+  std::size_t wedges = 0;
+  for (Part& part : parts) {
+    part.first_wedge = static_cast<std::uint32_t>(wedges);
+    wedges += primitive_of(scene, part).positions.size();
+  }
+  return wedges;
 }
 
 std::vector<Vec3> eye_positions(const Scene& scene, const View& view, const std::vector<Part>& parts, std::size_t wedges) {
@@ -43,28 +84,32 @@ std::vector<Vec3> eye_positions(const Scene& scene, const View& view, const std:
   return positions;
 }
 
+bool is_degenerate(const SoupFace& face) {
+  return face.point[0] == face.point[1] || face.point[1] == face.point[2] || face.point[2] == face.point[0];
+}
+
 void add_faces(const Scene& scene, Soup& soup) {
-  for (std::uint32_t p = 0; p < soup.parts.size(); ++p) {
+  std::vector<std::size_t> first(soup.parts.size() + 1, 0);
+  for (std::size_t p = 0; p < soup.parts.size(); ++p) first[p + 1] = first[p] + primitive_of(scene, soup.parts[p]).indices.size() / 3;
+  soup.faces.resize(first.back());
+  parallel_each(soup.parts.size(), 1, [&](std::size_t p) {
     const Primitive& primitive = primitive_of(scene, soup.parts[p]);
-    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      SoupFace face;
+    parallel_each(first[p + 1] - first[p], 4096, [&](std::size_t f) {
+      SoupFace& face = soup.faces[first[p] + f];
       for (int k = 0; k < 3; ++k) {
-        face.wedge[k] = soup.parts[p].first_wedge + primitive.indices[i + k];
+        face.wedge[k] = soup.parts[p].first_wedge + primitive.indices[3 * f + k];
         face.point[k] = soup.wedge_point[face.wedge[k]];
       }
-      face.part = p;
-      ++soup.source_triangles;
-      if (face.point[0] == face.point[1] || face.point[1] == face.point[2] || face.point[2] == face.point[0])
-        ++soup.degenerate_triangles;
-      else
-        soup.faces.push_back(face);
-    }
-  }
+      face.part = static_cast<std::uint32_t>(p);
+    });
+  });
+  soup.source_triangles = soup.outside_view + soup.faces.size();
+  soup.degenerate_triangles = std::erase_if(soup.faces, is_degenerate);
 }
 
 MeshTopology topology_of(const Soup& soup) {
   std::vector<Triangle> triangles(soup.faces.size());
-  for (std::size_t f = 0; f < triangles.size(); ++f) triangles[f] = soup.faces[f].point;
+  parallel_each(triangles.size(), 4096, [&](std::size_t f) { triangles[f] = soup.faces[f].point; });
   return build_topology(static_cast<std::uint32_t>(soup.points.size()), triangles);
 }
 
@@ -136,36 +181,49 @@ bool is_seen_from_behind(const Soup& soup, const SoupFace& face) {
 }
 
 void drop_back_faces(const Scene& scene, Soup& soup) {
-  std::vector<std::uint32_t> kept(soup.topology.edges.size(), 0);
-  std::vector<SoupFace> front;
-  for (std::size_t f = 0; f < soup.faces.size(); ++f) {
+  std::vector<std::uint8_t> kept(soup.faces.size());
+  parallel_each(kept.size(), 4096, [&](std::size_t f) {
     const int material = primitive_of(scene, soup.parts[soup.faces[f].part]).material;
     const bool double_sided = material >= 0 && scene.materials[material].double_sided;
-    if (!double_sided && is_seen_from_behind(soup, soup.faces[f])) continue;
-    for (const std::uint32_t edge : soup.topology.edges_of[f]) ++kept[edge];
-    front.push_back(soup.faces[f]);
-  }
-  soup.back_faces = soup.faces.size() - front.size();
+    kept[f] = double_sided || !is_seen_from_behind(soup, soup.faces[f]);
+  });
+  soup.back_faces = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
   if (soup.back_faces == 0) return;
-  for (std::size_t e = 0; e < kept.size(); ++e) soup.edges_opened_by_culling += kept[e] == 1 && soup.topology.edges[e].faces > 1;
-  soup.faces = std::move(front);
-  soup.topology = topology_of(soup);
+  soup.topology = keep_faces(soup.topology, kept);
+  std::size_t next = 0;
+  for (std::size_t f = 0; f < kept.size(); ++f)
+    if (kept[f]) soup.faces[next++] = soup.faces[f];
+  soup.faces.resize(next);
 }
+
+double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 } // namespace
 
 Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options) {
   Soup soup;
-  std::size_t wedges = 0;
-  soup.parts = list_parts(scene, wedges);
-  Weld welded = weld(eye_positions(scene, view, soup.parts, wedges));
+  soup.parts = list_parts(scene);
+  if (options.view_cull != nullptr) cull_parts(scene, view, *options.view_cull, soup);
+  Weld welded = weld(eye_positions(scene, view, soup.parts, number_wedges(scene, soup.parts)));
+  if (options.weld > 0) soup.snapped = snap(welded, options.weld);
   soup.points = std::move(welded.points);
   soup.wedge_point = std::move(welded.point_of);
   add_faces(scene, soup);
   soup.topology = topology_of(soup);
+  soup.near_misses = count_near_misses(soup.points, soup.topology, largest(view.eye));
   TJunctionSplitter(soup).run();
   for (const MeshTopology::Edge& edge : soup.topology.edges) soup.open_edges += edge.faces == 1;
   if (options.cull_back_faces) drop_back_faces(scene, soup);
+  return soup;
+}
+
+Soup make_loose_soup(const Scene& scene, const View& view) {
+  Soup soup;
+  soup.parts = list_parts(scene);
+  soup.points = eye_positions(scene, view, soup.parts, number_wedges(scene, soup.parts));
+  soup.wedge_point.resize(soup.points.size());
+  std::iota(soup.wedge_point.begin(), soup.wedge_point.end(), 0u);
+  add_faces(scene, soup);
   return soup;
 }
 

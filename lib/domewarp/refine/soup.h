@@ -8,6 +8,7 @@
 
 #include "domewarp/core/vectors.h"
 #include "domewarp/mesh/topology.h"
+#include "domewarp/refine/view_cull.h"
 #include "domewarp/scene/scene.h"
 #include "domewarp/scene/view.h"
 
@@ -44,17 +45,25 @@ struct Soup {
   MeshTopology topology;                      ///< of `faces`
   std::size_t source_triangles = 0;
   std::size_t degenerate_triangles = 0;   ///< two corners at one position: dropped, they cover nothing
+  std::size_t outside_view = 0;           ///< of primitives that cannot be seen: dropped before anything was transformed
   std::size_t back_faces = 0;             ///< dropped: single-sided and seen from behind
+  std::size_t snapped = 0;                ///< points that SoupOptions::weld moved
+  std::size_t near_misses = 0;            ///< pairs of ends of open edges that differ by a few float32 roundings
   std::size_t open_edges = 0;             ///< of the source, T-junctions split
   std::size_t t_junctions = 0;            ///< split, so that the warp does not open them
-  std::size_t edges_opened_by_culling = 0; ///< regular edges one of whose faces was dropped as a back face
 };
 
 struct SoupOptions {
   bool cull_back_faces = true;
+  double weld = 0;                        ///< points that are this near are joined, scene units; 0: equal to the bit
+  const ViewCull* view_cull = nullptr;    ///< null: every primitive enters
 };
 
 /// Deterministic; order of faces and wedges follows the scene.
 Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options);
+
+/// The triangles as the file lists them: every vertex is a point of its own, nothing is welded, mended or culled, and
+/// there is no topology.
+Soup make_loose_soup(const Scene& scene, const View& view);
 
 } // namespace domewarp

@@ -55,7 +55,7 @@ TEST(Refine, KeepsEveryPointWithinTheTolerance) {
 
 TEST(Refine, WithoutSubdivisionTheMeasureSeesTheError) {
   RefineOptions options;
-  options.subdivide = false;
+  options.subdivision = Subdivision::none;
   EXPECT_GT(measured_error_px(convert_shape(box(), curve("1-r^2"), options, raster), curve("1-r^2"), Projection::perspective, raster, 4), 5);
 }
 
@@ -191,7 +191,7 @@ TEST(Refine, DropsBackFacesOfSingleSidedMaterialsOnly) {
   scene.materials[0].double_sided = false;
   const Conversion culled = convert_shape(scene, curve("1-r^2"));
   EXPECT_EQ(triangle_count(culled.scene), 0u);
-  EXPECT_EQ(culled.report.back_faces, 1u);
+  EXPECT_EQ(culled.report.skipped.back_faces, 1u);
 }
 
 TEST(Refine, DrawsEveryBranchOfAMultiValuedCurve) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ball that does not hold the eye is seen within a cone. The cone spans an interval of view angles and one of azimuths,
+// so its image by one branch lies within a sector of a ring.
+#include "domewarp/refine/view_cull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace domewarp {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double rounding = 1e-9; ///< radians; far more than the arithmetic below loses
+
+} // namespace
+
+Ball bounding_ball(const Box& box, const Mat4& world, const View& view) {
+  const auto corner = [&](int i) {
+    const Vec3 p(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z);
+    return to_eye(view, to_world(world, Vec3f(p)));
+  };
+  Ball ball;
+  for (int i = 0; i < 8; ++i) ball.centre += corner(i) / 8.0;
+  for (int i = 0; i < 8; ++i) ball.radius = std::max(ball.radius, glm::length(corner(i) - ball.centre));
+  ball.radius *= 1 + 1e-12;
+  return ball;
+}
+
+ViewCull::ViewCull(const Surface& surface, const Raster& raster, double margin)
+    : surface_(surface), half_extent_(aspect(raster) + margin, 1 + margin) {}
+
+bool ViewCull::may_be_seen(const Ball& ball) const {
+  const double distance = glm::length(ball.centre);
+  if (!(distance > ball.radius)) return true;
+  const double half = std::asin(ball.radius / distance) + rounding;
+  const double theta = std::atan2(std::hypot(ball.centre.x, ball.centre.y), -ball.centre.z);
+  const double low = std::max(theta - half, 0.0), high = std::min(theta + half, pi);
+  const bool holds_axis = theta <= half || theta + half >= pi;
+  const double half_azimuth = holds_axis ? pi : std::asin(std::min(1.0, std::sin(half) / std::sin(theta))) + rounding;
+  const double azimuth = std::atan2(ball.centre.y, ball.centre.x);
+  for (std::size_t b = 0; b < surface_.branches().size(); ++b) {
+    const Branch& branch = surface_.branches()[b];
+    if (low > branch.theta_high + rounding || high < branch.theta_low - rounding) continue;
+    const auto [near, far] = std::minmax({surface_.radius(b, std::sin(low), std::cos(low)), surface_.radius(b, std::sin(high), std::cos(high))});
+    if (meets_rectangle(near * (1 - rounding), far * (1 + rounding), azimuth, half_azimuth)) return true;
+  }
+  return false;
+}
+
+bool ViewCull::meets_rectangle(double radius_low, double radius_high, double azimuth, double half_azimuth) const {
+  for (int side = 0; side < 4; ++side) {
+    // Farthest of the sector's directions from this side's normal.
+    const double apart = std::min(pi, std::abs(std::remainder(azimuth - side * pi / 2, 2 * pi)) + half_azimuth);
+    const double least = std::cos(apart) * (apart < pi / 2 ? radius_low : radius_high);
+    if (least > half_extent_[side % 2]) return false;
+  }
+  return true;
+}
+
+} // namespace domewarp
