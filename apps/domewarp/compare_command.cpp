@@ -36,9 +36,7 @@ void write_picture(const fs::path& path, const Pixels& picture) {
 }
 
 void write_pictures(const fs::path& folder, const Frame& reference, const Frame& warped, const CompareReport& report, const Record& record) {
-  std::error_code status;
-  fs::create_directories(folder, status);
-  if (status) throw Error(ErrorCode::output, folder.string() + ": cannot be made: " + status.message());
+  make_folder(folder);
   write_picture(folder / "raytraced.png", colours(reference));
   write_picture(folder / "rasterised.png", colours(warped));
   write_picture(folder / "difference.png", difference_picture(reference, warped));

@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
+#include "domewarp/convert/job.h"
 #include "domewarp/convert/report.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 #include "domewarp/core/parallel.h"
-#include "domewarp/gltf/read.h"
-#include "domewarp/gltf/write.h"
 #include "options.h"
+#include "progress_bar.h"
 
 namespace domewarp {
 
@@ -19,31 +19,32 @@ namespace {
 
 struct Arguments {
   std::string input, output, report;
-  ConvertOptions options;
-  ReadOptions read;
-  WriteOptions write;
+  JobOptions job;
   bool json = false, quiet = false;
   int threads = 0;
 };
 
-int run(const Arguments& arguments) {
-  require_surface(arguments.options.surface);
-  const ThreadLimit threads(arguments.threads);
-  const Scene scene = read_scene(arguments.input, arguments.read);
-  ConvertReport report;
-  const Scene warped = convert(scene, arguments.options, report);
-  write_scene(warped, arguments.output, arguments.write);
-  const std::string json = to_json(report, arguments.options);
-  if (!arguments.report.empty()) write_file(arguments.report, json);
+void print(const Arguments& arguments, const ConvertReport& report, const std::string& json) {
   if (!arguments.quiet)
     for (const std::string& warning : report.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
   if (arguments.json)
     std::cout << json;
   else if (!arguments.quiet)
-    std::cout << arguments.input << " -> " << arguments.output << "\n" << to_text(report, arguments.options);
-  if (is_kept(report, arguments.options)) return 0;
-  std::cerr << "domewarp: " << arguments.output << ": the tolerance of " << arguments.options.refine.tolerance_px
-            << " px was not kept: certified " << report.refine.error_px_max << " px\n";
+    std::cout << arguments.input << " -> " << arguments.output << "\n" << to_text(report, arguments.job.convert);
+}
+
+int run(const Arguments& arguments) {
+  const ConvertOptions& options = arguments.job.convert;
+  require_surface(options.surface);
+  const ThreadLimit threads(arguments.threads);
+  ProgressBar bar(arguments.quiet);
+  const ConvertReport report = run_job(arguments.input, arguments.output, arguments.job, nullptr, bar.watch());
+  bar.clear();
+  const std::string json = to_json(report, options);
+  if (!arguments.report.empty()) write_file(arguments.report, json);
+  print(arguments, report, json);
+  if (is_kept(report, options)) return 0;
+  std::cerr << "domewarp: " << arguments.output << ": " << broken_promise(report, options) << "\n";
   return static_cast<int>(ErrorCode::unkept);
 }
 
@@ -54,15 +55,7 @@ void add_convert_command(CLI::App& app, int& status) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("IN", arguments->input, "The scene (.glb or .gltf)")->required();
   command->add_option("-o,--output", arguments->output, "The warped scene to write (.glb or .gltf)")->required();
-  add_view_options(*command, arguments->options.view);
-  add_surface_options(*command, arguments->options.surface);
-  add_raster_options(*command, arguments->options.raster);
-  add_method_option(*command, arguments->options.method);
-  add_quality_options(*command, arguments->options.refine);
-  add_output_options(*command, arguments->options);
-  command->add_flag("--draco", arguments->write.draco, "Compress with KHR_draco_mesh_compression, one grid for the file");
-  command->add_flag("--quantize", arguments->write.quantize, "Store integers (KHR_mesh_quantization), one grid for the file");
-  add_read_options(*command, arguments->read);
+  add_job_options(*command, arguments->job);
   command->add_option("--report", arguments->report, "Write the report as JSON")->type_name("FILE.json");
   command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the report as JSON");

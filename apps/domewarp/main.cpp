@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   app.footer("Exit status: 0 done, 1 usage, 2 input unreadable or invalid, 3 a promise not kept, 4 output not written.");
   int status = 0;
   domewarp::add_convert_command(app, status);
+  domewarp::add_batch_command(app, status);
   domewarp::add_inspect_command(app, status);
   domewarp::add_render_command(app, status);
   domewarp::add_compare_command(app, status);

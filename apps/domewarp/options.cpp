@@ -181,4 +181,16 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
   group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");
 }
 
+void add_job_options(CLI::App& app, JobOptions& job) {
+  add_view_options(app, job.convert.view);
+  add_surface_options(app, job.convert.surface);
+  add_raster_options(app, job.convert.raster);
+  add_method_option(app, job.convert.method);
+  add_quality_options(app, job.convert.refine);
+  add_output_options(app, job.convert);
+  app.add_flag("--draco", job.write.draco, "Compress with KHR_draco_mesh_compression, one grid for the file");
+  app.add_flag("--quantize", job.write.quantize, "Store integers (KHR_mesh_quantization), one grid for the file");
+  add_read_options(app, job.read);
+}
+
 } // namespace domewarp

@@ -3,8 +3,7 @@
 
 #include <string>
 
-#include "domewarp/convert/convert.h"
-#include "domewarp/gltf/read.h"
+#include "domewarp/convert/job.h"
 
 namespace CLI {
 class App;
@@ -26,6 +25,9 @@ void add_raster_options(CLI::App& app, Raster& raster);
 void add_method_option(CLI::App& app, Method& method);
 void add_quality_options(CLI::App& app, RefineOptions& refine);
 void add_output_options(CLI::App& app, ConvertOptions& options);
+
+/// All options of a conversion from file to file: those of `convert`, of `batch` and of a manifest.
+void add_job_options(CLI::App& app, JobOptions& job);
 
 /// @throws Error(usage) unless exactly one of --curve, --lens and --profile was given
 void require_surface(const SurfaceOptions& surface);

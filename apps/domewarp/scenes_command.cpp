@@ -7,19 +7,13 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
-#include "domewarp/core/errors.h"
+#include "domewarp/core/files.h"
 #include "domewarp/gltf/write.h"
 #include "domewarp/scene/test_scenes.h"
 
 namespace domewarp {
 
 namespace {
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code status;
-  std::filesystem::create_directories(folder, status);
-  if (status) throw Error(ErrorCode::output, folder.string() + ": cannot be made: " + status.message());
-}
 
 int run(const std::filesystem::path& folder) {
   make_folder(folder);

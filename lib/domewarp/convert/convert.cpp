@@ -2,11 +2,11 @@
 #include "domewarp/convert/convert.h"
 
 #include <chrono>
-
-#include <sys/resource.h>
+#include <sstream>
 
 #include "domewarp/convert/record.h"
 #include "domewarp/core/errors.h"
+#include "domewarp/core/memory.h"
 
 namespace domewarp {
 
@@ -15,12 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
 
 void warn_of_undrawn_primitives(const Scene& scene, std::vector<std::string>& warnings) {
   std::size_t lines = 0, points = 0;
@@ -33,30 +27,46 @@ void warn_of_undrawn_primitives(const Scene& scene, std::vector<std::string>& wa
     warnings.push_back("left out " + std::to_string(lines) + " primitive(s) of lines and " + std::to_string(points) + " of points");
 }
 
+void check_raster(const Raster& raster) {
+  if (raster.width <= 0 || raster.height <= 0) throw Error(ErrorCode::usage, "--size: must be at least 1x1");
+}
+
+void note_display(const Display& display, ConvertReport& report) {
+  report.r_max = display.surface.r_max();
+  report.r_max_limit = display.surface.r_max_limit();
+  report.branches = display.surface.branches();
+  for (const BranchMap& branch : display.map.branches) report.tables.push_back(branch.table());
+}
+
 } // namespace
 
-Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report) {
+Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report, const Progress& progress) {
+  check_raster(options.raster);
   const Clock::time_point start = Clock::now();
-  if (options.raster.width <= 0 || options.raster.height <= 0)
-    throw Error(ErrorCode::usage, "--size: must be at least 1x1");
+  const Display display = make_display(options.surface, options.raster, options.method);
+  const double map_ms = ms_since(start);
+  Scene warped = convert(scene, options, display, report, progress);
+  report.map_ms = map_ms;
+  report.total_ms += map_ms;
+  return warped;
+}
+
+Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report,
+              const Progress& progress) {
+  check_raster(options.raster);
+  const Clock::time_point start = Clock::now();
   report.warnings = scene.warnings;
   report.dropped_extensions = scene.dropped_extensions;
   warn_of_undrawn_primitives(scene, report.warnings);
   report.view = resolve_view(scene, options.view);
+  note_display(display, report);
 
-  const Surface surface(options.surface, screen_radius(options.raster));
-  const ImageMap map = make_image_map(surface, options.method);
-  report.r_max = surface.r_max();
-  report.r_max_limit = surface.r_max_limit();
-  report.branches = surface.branches();
-  for (const BranchMap& branch : map.branches) report.tables.push_back(branch.table());
-  report.map_ms = ms_since(start);
-
-  Scene warped = refine(scene, report.view, surface, map, options.raster, options.refine, report.refine);
+  tell(progress, "refine");
+  Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);
   if (options.unlit)
     for (Material& material : warped.materials) material.unlit = true;
   report.total_ms = ms_since(start);
-  report.peak_memory_mb = peak_memory_mb();
+  report.peak_memory_mb = static_cast<double>(peak_memory()) / (1 << 20);
   warped.extras = to_json(make_record(options, report));
   return warped;
 }
@@ -64,6 +74,14 @@ Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {
   return report.refine.limits_hit.empty() && report.refine.open_edges == 0 &&
          (options.refine.subdivision != Subdivision::adaptive || report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6));
+}
+
+std::string broken_promise(const ConvertReport& report, const ConvertOptions& options) {
+  std::ostringstream text;
+  text << "the tolerance of " << options.refine.tolerance_px << " px was not kept: certified " << report.refine.error_px_max << " px";
+  if (report.refine.open_edges > 0) text << ", " << report.refine.open_edges << " open edges that the source did not have";
+  for (const std::string& limit : report.refine.limits_hit) text << ", stopped by " << limit;
+  return text.str();
 }
 
 } // namespace domewarp

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "domewarp/convert/display.h"
+#include "domewarp/core/progress.h"
 #include "domewarp/profile/surface.h"
 #include "domewarp/refine/refine.h"
 #include "domewarp/scene/raster.h"
@@ -38,9 +40,16 @@ struct ConvertReport {
 /// The whole job: a scene in, the pre-warped scene out, `Scene::extras` filled in so that the file says how it was made
 /// (record.h). A tolerance that could not be reached shows in report.refine.limits_hit and error_px_max.
 /// @throws Error(usage) for a view, surface, raster or tolerance that cannot work
-Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report);
+Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report, const Progress& progress = {});
+
+/// The same with a display that was made before, of the same surface, raster and method.
+Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report,
+              const Progress& progress = {});
 
 /// Whether the promise of the tolerance was kept.
 bool is_kept(const ConvertReport& report, const ConvertOptions& options);
+
+/// What was not kept, in one sentence without a file's name.
+std::string broken_promise(const ConvertReport& report, const ConvertOptions& options);
 
 } // namespace domewarp

@@ -74,6 +74,8 @@ Record make_record(const ConvertOptions& options, const ConvertReport& report) {
   return record;
 }
 
+std::string to_json(const SurfaceOptions& surface) { return surface_json(surface).dump(); }
+
 std::string to_json(const Record& record) {
   Json json;
   json["version"] = record.version;

@@ -27,6 +27,9 @@ Record make_record(const ConvertOptions& options, const ConvertReport& report);
 /// JSON text; numbers survive to the last bit.
 std::string to_json(const Record& record);
 
+/// The surface alone, as in `Record::surface`.
+std::string to_json(const SurfaceOptions& surface);
+
 /// @param name of the file, for messages
 /// @throws Error(input) when the text is empty, no JSON, or lacks what a picture needs
 Record parse_record(const std::string& text, const std::string& name);

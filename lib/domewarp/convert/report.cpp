@@ -98,7 +98,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
                      {"emit", refine.emit_ms},
                      {"total", report.total_ms}};
   json["peak_memory_mb"] = report.peak_memory_mb;
-  json["surface"] = Json::parse(to_json(make_record(options, report)))["surface"];
+  json["surface"] = Json::parse(to_json(options.surface));
   json["surface"]["r_max"] = report.r_max;
   json["surface"]["r_max_reason"] = to_string(report.r_max_limit);
   json["surface"]["branches"] = branches_json(report);

@@ -89,4 +89,10 @@ void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
+void make_folder(const fs::path& path) {
+  std::error_code status;
+  if (!path.empty()) fs::create_directories(path, status);
+  if (status) throw Error(ErrorCode::output, path.string() + ": cannot be made: " + status.message());
+}
+
 } // namespace domewarp

@@ -18,4 +18,7 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 
+/// Makes a folder and those above it where they are missing. @throws Error(output)
+void make_folder(const std::filesystem::path& path);
+
 } // namespace domewarp

@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace domewarp {
 
@@ -15,6 +16,8 @@ ThreadLimit::ThreadLimit(int threads)
                            : nullptr) {}
 
 ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+
+void with_threads(int threads, const std::function<void()>& body) { tbb::task_arena(threads).execute(body); }
 
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;

@@ -18,6 +18,9 @@ private:
   void* control_;
 };
 
+/// Calls body() so that the parallel loops inside it use at most this many threads, whatever others do meanwhile.
+void with_threads(int threads, const std::function<void()>& body);
+
 /// Calls body(begin, end) on disjoint ranges that cover [0, count), in parallel, at least `grain` items each.
 /// The split into ranges may differ from run to run: the body must not let it reach a result.
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);

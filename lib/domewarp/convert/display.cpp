@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/convert/display.h"
+
+#include <string>
+
+#include "domewarp/convert/record.h"
+#include "domewarp/scene/view.h"
+
+namespace domewarp {
+
+Display make_display(const SurfaceOptions& options, const Raster& raster, Method method) {
+  Surface surface(options, screen_radius(raster));
+  ImageMap map = make_image_map(surface, method);
+  return {std::move(surface), std::move(map)};
+}
+
+std::shared_ptr<const Display> DisplayCache::find(const SurfaceOptions& options, const Raster& raster, Method method) {
+  const std::string key = to_json(options) + std::to_string(raster.width) + "x" + std::to_string(raster.height) +
+                          std::to_string(static_cast<int>(method));
+  std::shared_ptr<Entry> entry;
+  {
+    const std::lock_guard lock(guard_);
+    std::shared_ptr<Entry>& found = entries_[key];
+    if (!found) found = std::make_shared<Entry>();
+    entry = found;
+  }
+  const std::lock_guard lock(entry->making);
+  if (!entry->display) entry->display = std::make_shared<const Display>(make_display(options, raster, method));
+  return entry->display;
+}
+
+} // namespace domewarp
