@@ -16,17 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
 
-void warn_of_undrawn_primitives(const Scene& scene, std::vector<std::string>& warnings) {
-  std::size_t lines = 0, points = 0;
-  for (const Instance& instance : scene.instances)
-    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-      lines += primitive.topology == Topology::lines;
-      points += primitive.topology == Topology::points;
-    }
-  if (lines + points > 0)
-    warnings.push_back("left out " + std::to_string(lines) + " primitive(s) of lines and " + std::to_string(points) + " of points");
-}
-
 void check_raster(const Raster& raster) {
   if (raster.width <= 0 || raster.height <= 0) throw Error(ErrorCode::usage, "--size: must be at least 1x1");
 }
@@ -57,7 +46,6 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   const Clock::time_point start = Clock::now();
   report.warnings = scene.warnings;
   report.dropped_extensions = scene.dropped_extensions;
-  warn_of_undrawn_primitives(scene, report.warnings);
   report.view = resolve_view(scene, options.view);
   note_display(display, report);
 

@@ -75,6 +75,8 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
                        {"culled", culled(refine.skipped)},
                        {"clipped", refine.triangles_clipped},
                        {"output", refine.triangles_out}};
+  json["lines"] = {{"input", refine.lines_in}, {"output", refine.lines_out}};
+  json["points"] = {{"input", refine.points_in}, {"output", refine.points_out}};
   json["vertices"] = refine.vertices;
   json["tolerance_px"] = options.refine.tolerance_px;
   json["error_px"] = {{"max", refine.error_px_max}, {"p99", refine.error_px_p99}, {"mean", refine.error_px_mean}};
@@ -111,6 +113,9 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
 std::string to_text(const ConvertReport& report, const ConvertOptions& options) {
   const RefineReport& refine = report.refine;
   std::ostringstream text;
+  if (refine.lines_in + refine.points_in > 0)
+    text << "lines       " << refine.lines_in << " in, " << refine.lines_out << " out; points " << refine.points_in << " in, "
+         << refine.points_out << " out\n";
   text << "triangles   " << refine.triangles_in << " in, " << refine.triangles_out << " out ("
        << culled(refine.skipped) << " culled, " << refine.triangles_clipped
        << " clipped), " << refine.vertices << " vertices\n"

@@ -7,17 +7,16 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/t_junctions.h"
+#include "domewarp/refine/warped_vertex.h"
 
 namespace domewarp {
 
 namespace {
 
 constexpr std::uint32_t unused = 0xffffffff;
-constexpr const char* source_position = "_SOURCE_POSITION";
 
 /// Attribute values of the derived wedges that the output needs, in the space of their mesh, components of all
 /// attributes of the part side by side. A wedge's parents come before it, so one ascending pass is enough.
@@ -101,48 +100,11 @@ bool is_off_picture(const RefinedMesh& refined, const RefinedFace& face, const V
   return false;
 }
 
-Vec3f unit_or_zero(const Vec3& v) {
-  const double length = glm::length(v);
-  return length > 0 ? Vec3f(v / length) : Vec3f(0);
-}
-
-/// Turns directions of a mesh into eye space; other attributes pass as they are.
-class AttributeWriter {
-public:
-  AttributeWriter(const View& view, const Mat4& world)
-      : directions_(Mat3(world_to_eye(view)) * Mat3(world)), normals_(cofactors(directions_)) {}
-
-  void append(const Attribute& attribute, const double* values, std::vector<float>& out) const {
-    int done = 0;
-    if (attribute.name == "NORMAL" || attribute.name == "TANGENT") {
-      const Vec3 v(values[0], values[1], values[2]);
-      const Vec3f turned = unit_or_zero(attribute.name == "NORMAL" ? normals_ * v : directions_ * v);
-      out.insert(out.end(), {turned.x, turned.y, turned.z});
-      done = 3;
-    }
-    for (; done < attribute.components; ++done) out.push_back(static_cast<float>(values[done]));
-  }
-
-private:
-  /// Cofactor matrix: turns normals, also for mirrored matrices up to the sign that winding has already taken care of.
-  static Mat3 cofactors(const Mat3& m) {
-    const Mat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    return glm::determinant(m) < 0 ? -c : c;
-  }
-
-  Mat3 directions_, normals_;
-};
-
 struct PartOutput {
   Primitive primitive;
   std::size_t zero_area = 0;
   double smallest_depth = std::numeric_limits<double>::infinity(), largest_depth = 0;
 };
-
-Vec3f warped_position(const MappedPoint& point, Projection projection) {
-  if (projection == Projection::orthographic) return Vec3f(Vec3(point.mapped.image, -glm::length(point.eye)));
-  return Vec3f(Vec3(point.mapped.image * point.mapped.weight, -point.mapped.weight));
-}
 
 class PartEmitter {
 public:
@@ -284,6 +246,10 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegi
   std::vector<Vec3> points(refined.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = refined.points[i].eye;
   report.t_junctions_out += find_t_junctions(points, open).size();
+  add_errors(errors, raster, report);
+}
+
+void add_errors(std::vector<float>& errors, const Raster& raster, RefineReport& report) {
   if (errors.empty()) return;
   const double px = 1 / pixel_size(raster);
   double sum = 0;

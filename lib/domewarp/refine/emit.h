@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "domewarp/refine/levels.h"
 #include "domewarp/refine/refine.h"
 
@@ -18,6 +20,9 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegi
 
 /// Faces this far outside the image rectangle are dropped, image units.
 double picture_margin(const RefineOptions& options, const Raster& raster);
+
+/// Adds certified errors (image units; reordered) to the report: the largest of every branch and kind counts.
+void add_errors(std::vector<float>& errors, const Raster& raster, RefineReport& report);
 
 /// The camera that shows the picture, from the depths that were written.
 Camera picture_camera(const Raster& raster, Projection projection, double smallest_depth, double largest_depth);

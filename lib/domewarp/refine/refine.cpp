@@ -10,6 +10,7 @@
 #include "domewarp/core/errors.h"
 #include "domewarp/refine/emit.h"
 #include "domewarp/refine/levels.h"
+#include "domewarp/refine/lines.h"
 #include "domewarp/refine/soup.h"
 
 namespace domewarp {
@@ -113,7 +114,10 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   report.snapped = soup.snapped;
   report.t_junctions_in = soup.t_junctions;
   report.open_edges_in = soup.open_edges;
-  report.near = options.near > 0 ? options.near : std::max(1e-5 * extent(soup), 1e-30);
+  const LineCounts lines = count_lines(scene, view);
+  report.lines_in = lines.lines;
+  report.points_in = lines.points;
+  report.near = options.near > 0 ? options.near : std::max(1e-5 * std::max(extent(soup), lines.extent), 1e-30);
   report.soup_ms = watch.lap();
 
   OracleOptions oracle_options{working_share * options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
@@ -129,6 +133,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     report.levels_ms += watch.lap();
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
     audit_edges(soup, refined, oracle.region(), raster, report);
+    emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }
   out.cameras = {picture_camera(raster, options.projection, report.smallest_depth, report.largest_depth)};

@@ -40,6 +40,8 @@ struct RefineReport {
   std::size_t triangles_out = 0;
   std::size_t triangles_clipped = 0; ///< pieces outside the visible cones or inside the near sphere
   SkipReport skipped;
+  std::size_t lines_in = 0, lines_out = 0;   ///< segments
+  std::size_t points_in = 0, points_out = 0;
   std::size_t vertices = 0;
   std::size_t map_evaluations = 0;
   std::size_t levels = 0;            ///< of refinement, the deepest branch
@@ -65,6 +67,8 @@ struct RefineReport {
 ///
 /// Why no cracks: an edge has one record for the whole scene, keyed by its two positions; whether, where and how it is
 /// split is a pure function of these (edge_oracle.h); the split point is stored once and every face uses it.
+///
+/// Lines are split and clipped by the same rules, so they stay on the triangle edges they lie on; points are mapped.
 ///
 /// @return a scene of warped meshes in output space (perspective: w (x', y', -1); orthographic: (x', y', -depth)),
 ///         one mesh and instance per drawn instance of the source, with the camera that shows the picture, materials,

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/refine/warped_vertex.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace domewarp {
+
+namespace {
+
+Vec3f unit_or_zero(const Vec3& v) {
+  const double length = glm::length(v);
+  return length > 0 ? Vec3f(v / length) : Vec3f(0);
+}
+
+/// Cofactor matrix: turns normals, also for mirrored matrices up to the sign that winding has already taken care of.
+Mat3 cofactors(const Mat3& m) {
+  const Mat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return glm::determinant(m) < 0 ? -c : c;
+}
+
+} // namespace
+
+Vec3f warped_position(const MappedPoint& point, Projection projection) {
+  if (projection == Projection::orthographic) return Vec3f(Vec3(point.mapped.image, -glm::length(point.eye)));
+  return Vec3f(Vec3(point.mapped.image * point.mapped.weight, -point.mapped.weight));
+}
+
+AttributeWriter::AttributeWriter(const View& view, const Mat4& world)
+    : directions_(Mat3(world_to_eye(view)) * Mat3(world)), normals_(cofactors(directions_)) {}
+
+void AttributeWriter::append(const Attribute& attribute, const double* values, std::vector<float>& out) const {
+  int done = 0;
+  if (attribute.name == "NORMAL" || attribute.name == "TANGENT") {
+    const Vec3 v(values[0], values[1], values[2]);
+    const Vec3f turned = unit_or_zero(attribute.name == "NORMAL" ? normals_ * v : directions_ * v);
+    out.insert(out.end(), {turned.x, turned.y, turned.z});
+    done = 3;
+  }
+  for (; done < attribute.components; ++done) out.push_back(static_cast<float>(values[done]));
+}
+
+} // namespace domewarp

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "domewarp/refine/edge_oracle.h"
+#include "domewarp/scene/scene.h"
+#include "domewarp/scene/view.h"
+
+namespace domewarp {
+
+inline constexpr const char* source_position = "_SOURCE_POSITION";
+
+/// The position as it is written: w (x', y', -1) for perspective output, (x', y', -depth) for orthographic.
+Vec3f warped_position(const MappedPoint& point, Projection projection);
+
+/// Turns directions of a mesh into eye space; other attributes pass as they are.
+class AttributeWriter {
+public:
+  AttributeWriter(const View& view, const Mat4& world);
+
+  /// Appends one vertex' values of an attribute. @param values `attribute.components` of them, in the space of the mesh
+  void append(const Attribute& attribute, const double* values, std::vector<float>& out) const;
+
+private:
+  Mat3 directions_, normals_;
+};
+
+} // namespace domewarp
