@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -7,11 +7,14 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
+#include "domewarp/audit/exact_rays.h"
 #include "domewarp/convert/record.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 #include "domewarp/gltf/read.h"
 #include "domewarp/render/compare.h"
+#include "domewarp/render/compare_pictures.h"
+#include "domewarp/render/drawn_crossings.h"
 #include "domewarp/render/rasterise.h"
 #include "domewarp/render/ray_trace.h"
 #include "domewarp/scene/image.h"
@@ -35,21 +38,42 @@ void write_picture(const fs::path& path, const Pixels& picture) {
   write_file(path, encode_png(picture.width, picture.height, 4, picture.rgba));
 }
 
-void write_pictures(const fs::path& folder, const Frame& reference, const Frame& warped, const CompareReport& report, const Record& record) {
+/// Both pictures and what was found in them.
+struct Comparison {
+  Record record;
+  Frame reference, warped;
+  Screen screen; ///< of the warped scene
+  CompareReport report;
+};
+
+/// Twice the tolerance is red, so what should not be there is.
+Pixels displacement_picture(const Comparison& c) {
+  return displacement_picture(c.report, c.warped.width, c.warped.height, 2 * c.record.tolerance_px);
+}
+
+void write_pictures(const fs::path& folder, const Comparison& c) {
   make_folder(folder);
-  write_picture(folder / "raytraced.png", colours(reference));
-  write_picture(folder / "rasterised.png", colours(warped));
-  write_picture(folder / "difference.png", difference_picture(reference, warped));
-  write_picture(folder / "displacement.png", displacement_picture(report, record.raster, 2 * record.tolerance_px));
-  write_file(folder / "compare.json", to_json(report) + "\n");
+  write_picture(folder / "raytraced.png", colours(c.reference));
+  write_picture(folder / "rasterised.png", colours(c.warped));
+  write_picture(folder / "difference.png", difference_picture(c.reference, c.warped));
+  write_picture(folder / "displacement.png", displacement_picture(c));
+  write_picture(folder / "cracks.png", crack_picture(c.report, c.warped));
+  write_picture(folder / "wireframe.png", wireframe_picture(c.warped, c.screen));
+  write_file(folder / "compare.json", to_json(c.report) + "\n");
+}
+
+std::string at_seams(std::size_t count) {
+  return count == 0 ? "" : " (" + std::to_string(count) + " where pieces abut)";
 }
 
 std::string to_text(const CompareReport& report) {
   std::ostringstream text;
   text << "coverage      " << report.coverage.reference << " px traced, " << report.coverage.warped << " rasterised, "
        << report.coverage.both << " both\n"
-       << "pinholes      " << report.pinholes << "\n"
-       << "mismatches    " << report.surface_mismatch << " px show another surface\n";
+       << "pinholes      " << report.pinholes << at_seams(report.pinholes_at_seams) << "\n";
+  if (report.overlaps) text << "overlaps      " << *report.overlaps << "\n";
+  text << "mismatches    " << report.surface_mismatch << " px show a hidden surface" << at_seams(report.surface_mismatch_at_seams)
+       << ", " << report.depth_ties << " one of two at the same depth; " << report.outline << " differ at outlines, within the bound\n";
   text.precision(4);
   if (report.displacement_px.measured > 0)
     text << "displacement  max " << report.displacement_px.max << " px, 99.9 % below " << report.displacement_px.p999 << " px, rms "
@@ -58,7 +82,8 @@ std::string to_text(const CompareReport& report) {
     text << "displacement  not measured: the warped file has no _SOURCE_POSITION (convert --source-attributes)\n";
   text << "depth         max " << 100 * report.depth_rel.max << " % off\n" << "colour        mean difference " << report.colour_difference << " of 255";
   if (report.psnr_db) text << ", PSNR " << *report.psnr_db << " dB";
-  text << "\n";
+  if (report.ssim) text << ", SSIM " << *report.ssim;
+  text << ", FLIP mean " << report.flip.mean << " max " << report.flip.max << "\n";
   return text.str();
 }
 
@@ -77,22 +102,42 @@ bool is_kept(const Arguments& arguments, const CompareReport& report) {
   return kept;
 }
 
-int run(const Arguments& arguments) {
-  const Scene warped_scene = read_scene(arguments.warped, arguments.read);
-  const Record record = parse_record(warped_scene.extras, arguments.warped);
+CompareOptions compare_options(const Record& record) {
+  CompareOptions options;
+  options.bound_px = record.tolerance_px + subpixel_step;
+  options.depth_bound = 2 * record.depth_error + 1e-6; // each of two surfaces may be off by it; the rest is rounding
+  return options;
+}
+
+Comparison compare(const Arguments& arguments) {
+  const Scene warped = read_scene(arguments.warped, arguments.read);
+  Comparison c;
+  c.record = parse_record(warped.extras, arguments.warped);
+  const Record& record = c.record;
   const Scene scene = read_scene(arguments.scene, arguments.read);
   const Surface surface(record.surface, screen_radius(record.raster));
   const ImageMap map = make_image_map(surface, Method::automatic);
   RayTraceOptions rays;
   rays.near = record.near;
   rays.unlit = record.unlit;
-  const Frame reference = ray_trace(scene, record.view, surface, record.raster, rays);
-  const Frame warped = rasterise(warped_scene, record.raster, {.unlit = record.unlit});
-  const CompareReport report = compare_frames(reference, warped, surface, map, record.raster);
-  if (!arguments.out.empty()) write_pictures(arguments.out, reference, warped, report, record);
-  std::cout << (arguments.json ? to_json(report) + "\n" : to_text(report));
+  c.reference = ray_trace(scene, record.view, surface, record.raster, rays);
+  c.warped = rasterise(warped, record.raster, {.unlit = record.unlit});
+  c.screen = make_screen(warped, record.raster);
+  const Parts parts = prepare_parts(scene);
+  const ExactRays exact(scene, record.view);
+  const CrossingsAlong crossings = [&](const Vec3& direction) {
+    return keep_drawn(parts, exact.crossings(direction), record.near);
+  };
+  c.report = compare_frames(c.reference, c.warped, c.screen, surface, map, record.raster, crossings, compare_options(record));
+  return c;
+}
+
+int run(const Arguments& arguments) {
+  const Comparison c = compare(arguments);
+  if (!arguments.out.empty()) write_pictures(arguments.out, c);
+  std::cout << (arguments.json ? to_json(c.report) + "\n" : to_text(c.report));
   if (!arguments.json && !arguments.out.empty()) std::cout << "pictures      " << arguments.out << "\n";
-  return is_kept(arguments, report) ? 0 : static_cast<int>(ErrorCode::unkept);
+  return is_kept(arguments, c.report) ? 0 : static_cast<int>(ErrorCode::unkept);
 }
 
 } // namespace
@@ -102,7 +147,7 @@ void add_compare_command(CLI::App& app, int& status) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("SCENE", arguments->scene, "The original scene")->required();
   command->add_option("WARPED", arguments->warped, "The file that convert made of it")->required();
-  command->add_option("--out", arguments->out, "Folder for both pictures, their difference, the displacement map and compare.json")->type_name("DIR");
+  command->add_option("--out", arguments->out, "Folder for both pictures, their difference, displacement, cracks, wireframe and compare.json")->type_name("DIR");
   command->add_option_function<std::string>("--max-displacement", [arguments](const std::string& text) {
     arguments->max_displacement = parse_number("--max-displacement", text); }, "Exit with 3 above this many pixels")->type_name("PX");
   command->add_option_function<std::string>("--max-pinholes", [arguments](const std::string& text) {

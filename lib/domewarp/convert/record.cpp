@@ -68,6 +68,7 @@ Record make_record(const ConvertOptions& options, const ConvertReport& report) {
   record.near = report.refine.near;
   record.unlit = options.unlit;
   record.error_px = report.refine.error_px_max;
+  record.depth_error = report.refine.depth_error_max;
   record.triangles_in = report.refine.triangles_in;
   record.triangles_out = report.refine.triangles_out;
   record.vertices = report.refine.vertices;
@@ -90,6 +91,7 @@ std::string to_json(const Record& record) {
   json["near"] = record.near;
   json["unlit"] = record.unlit;
   json["error_px"] = record.error_px;
+  json["depth_error"] = record.depth_error;
   json["triangles"] = {{"input", record.triangles_in}, {"output", record.triangles_out}};
   json["vertices"] = record.vertices;
   return json.dump();
@@ -110,6 +112,7 @@ Record parse_record(const std::string& text, const std::string& name) {
     record.near = json.value("near", 0.0);
     record.unlit = json.value("unlit", false);
     record.error_px = json.contains("error_px") && json["error_px"].is_number() ? json["error_px"].get<double>() : nan;
+    record.depth_error = json.value("depth_error", RefineOptions{}.depth_tolerance);
     return record;
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::input, name + ": asset.extras.domewarp cannot be understood: " + error.what());

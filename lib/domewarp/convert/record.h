@@ -19,6 +19,7 @@ struct Record {
   double near = 0;
   bool unlit = false;
   double error_px = 0;           ///< certified; nan when nothing bounds it
+  double depth_error = 0;        ///< certified, relative: how far interpolated depths are off
   std::size_t triangles_in = 0, triangles_out = 0, vertices = 0;
 };
 

@@ -2,10 +2,12 @@
 #include "domewarp/render/compare.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -18,15 +20,26 @@ namespace domewarp {
 
 namespace {
 
+/// How near depths must be to vote for two objects being one, and how evenly they must change inside a surface.
+constexpr double same_depth = 0.01;
+
+/// How far (relative to its distance) a source position may lie off the plane that the reference shows around it.
+constexpr double position_rounding = 2e-5;
+
 struct Pictures {
   const Frame& reference;
   const Frame& warped;
-  const CompareOptions& options;
   std::vector<std::uint32_t> object; ///< of the warped picture, in the reference's numbers; 0 where nothing is covered
+
+  std::size_t index(int column, int row) const {
+    return std::size_t(row) * std::size_t(reference.width) + std::size_t(column);
+  }
 };
 
-bool is_near(double depth, double reference, double tolerance) {
-  return std::isnan(depth) || std::abs(depth - reference) <= tolerance * reference;
+constexpr std::uint32_t unknown_object = std::numeric_limits<std::uint32_t>::max();
+
+bool is_near(double depth, double reference) {
+  return std::isnan(depth) || std::abs(depth - reference) <= same_depth * reference;
 }
 
 /// A written file lacks the objects nobody sees, so its objects are numbered otherwise. Each takes the number of the
@@ -36,48 +49,48 @@ std::vector<std::uint32_t> match_objects(const Pictures& p) {
   std::map<std::uint32_t, std::pair<std::size_t, std::uint32_t>> best;
   for (std::size_t i = 0; i < p.warped.object.size(); ++i) {
     const std::uint32_t warped = p.warped.object[i], reference = p.reference.object[i];
-    if (!warped || !reference || !is_near(p.warped.depth[i], p.reference.depth[i], p.options.depth_tolerance)) continue;
+    if (!warped || !reference || !is_near(p.warped.depth[i], p.reference.depth[i])) continue;
     ++votes[{warped, reference}];
   }
   for (const auto& [pair, count] : votes)
     if (count > best[pair.first].first) best[pair.first] = {count, pair.second};
-  constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> object(p.warped.object.size(), 0);
   for (std::size_t i = 0; i < object.size(); ++i)
     if (const std::uint32_t warped = p.warped.object[i])
-      object[i] = best.contains(warped) ? best[warped].second : unknown;
+      object[i] = best.contains(warped) ? best[warped].second : unknown_object;
   return object;
 }
 
-/// Calls visit(pixel) for the pixel and its neighbours inside the picture.
-template <typename Visit>
-void for_each_neighbour(const Frame& frame, int column, int row, Visit&& visit) {
-  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, frame.height - 1); ++y)
-    for (int x = std::max(column - 1, 0); x <= std::min(column + 1, frame.width - 1); ++x)
-      visit(std::size_t(y) * std::size_t(frame.width) + std::size_t(x));
+/// The plane of the triangle that the reference shows at a pixel, from its own pixel and one neighbour each way that
+/// shows the same triangle. @return false when there are none.
+bool find_plane(const Pictures& p, int column, int row, Vec3& normal, double& offset) {
+  const Frame& f = p.reference;
+  const std::size_t i = p.index(column, row);
+  const auto same = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= f.width || y >= f.height) return false;
+    const std::size_t k = p.index(x, y);
+    return f.object[k] == f.object[i] && f.triangle[k] == f.triangle[i];
+  };
+  const int dx = same(column + 1, row) ? 1 : same(column - 1, row) ? -1 : 0;
+  const int dy = same(column, row + 1) ? 1 : same(column, row - 1) ? -1 : 0;
+  if (dx == 0 || dy == 0) return false;
+  const Vec3 at(f.position[i]);
+  normal = glm::cross(Vec3(f.position[p.index(column + dx, row)]) - at, Vec3(f.position[p.index(column, row + dy)]) - at);
+  const double length = glm::length(normal);
+  if (!(length > 0)) return false;
+  normal /= length;
+  offset = glm::dot(normal, at);
+  return true;
 }
 
-bool is_pinhole(const Pictures& p, int column, int row) {
-  if (column < 1 || row < 1 || column > p.reference.width - 2 || row > p.reference.height - 2) return false;
-  bool inside = true;
-  for_each_neighbour(p.reference, column, row, [&](std::size_t i) { inside = inside && p.reference.object[i] != 0; });
-  return inside;
-}
-
-/// Whether the reference shows the object at the depth within the 3 x 3 pixels. The depth may lie anywhere between
-/// theirs: a surface at a slant changes depth by more than any tolerance within a pixel, and where two walls meet
-/// either may end up deeper than it gets in its own pixels. Without source positions the object alone decides.
-bool is_shown(const Pictures& p, int column, int row, std::uint32_t object, double depth) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  bool found = false;
-  for_each_neighbour(p.reference, column, row, [&](std::size_t i) {
-    if (!p.reference.object[i]) return;
-    found = found || p.reference.object[i] == object;
-    low = std::min(low, double(p.reference.depth[i]));
-    high = std::max(high, double(p.reference.depth[i]));
-  });
-  const double tolerance = p.options.depth_tolerance;
-  return found && (std::isnan(depth) || (depth >= low * (1 - tolerance) && depth <= high * (1 + tolerance)));
+/// Whether both pictures show the same object in the same plane at about the same distance.
+bool is_plainly_same(const Pictures& p, int column, int row) {
+  const std::size_t i = p.index(column, row);
+  if (p.object[i] != p.reference.object[i] || std::isnan(p.warped.depth[i])) return false;
+  Vec3 normal;
+  double offset = 0;
+  if (!is_near(p.warped.depth[i], p.reference.depth[i]) || !find_plane(p, column, row, normal, offset)) return false;
+  return std::abs(glm::dot(normal, Vec3(p.warped.position[i])) - offset) <= position_rounding * p.warped.depth[i];
 }
 
 /// Inside a surface: one object all around, whose depth changes evenly in all four directions across the pixel.
@@ -88,17 +101,9 @@ bool is_smooth(const Pictures& p, int column, int row) {
   for (const std::size_t step : {std::size_t{1}, line - 1, line, line + 1}) {
     if (f.object[i - step] != f.object[i] || f.object[i + step] != f.object[i]) return false;
     const double bend = double(f.depth[i - step]) + double(f.depth[i + step]) - 2.0 * f.depth[i];
-    if (!(std::abs(bend) <= p.options.depth_tolerance * f.depth[i])) return false;
+    if (!(std::abs(bend) <= same_depth * f.depth[i])) return false;
   }
   return true;
-}
-
-Verdict judge(const Pictures& p, int column, int row) {
-  const std::size_t i = std::size_t(row) * std::size_t(p.reference.width) + std::size_t(column);
-  const bool in_reference = p.reference.object[i] != 0, in_warped = p.warped.object[i] != 0;
-  if (!in_reference) return in_warped ? Verdict::warped_only : Verdict::background;
-  if (!in_warped) return is_pinhole(p, column, row) ? Verdict::pinhole : Verdict::reference_only;
-  return is_shown(p, column, row, p.object[i], p.warped.depth[i]) ? Verdict::same : Verdict::mismatch;
 }
 
 /// NaN where the pixel is at an outline or a crease, or no depth is known.
@@ -126,31 +131,82 @@ double displacement_px(const Surface& surface, const ImageMap& map, const Raster
   return best / pixel;
 }
 
-void judge_rows(const Pictures& p, const Surface& surface, const ImageMap& map, const Raster& raster,
-                CompareReport& report) {
+struct Judged {
+  Verdict verdict = Verdict::background;
+  bool arbitrated = false;
+};
+
+Judged judge_pixel(const Pictures& p, const PixelJudge& judge, int column, int row, double displacement) {
+  const std::size_t i = p.index(column, row);
+  if (!p.warped.object[i]) {
+    if (!p.reference.object[i]) return {Verdict::background, false};
+    return {judge.judge_bare(column, row), true};
+  }
+  if (is_plainly_same(p, column, row)) return {Verdict::same, false};
+  const std::uint32_t object = p.object[i] == unknown_object ? 0 : p.object[i];
+  if (std::isnan(displacement)) {
+    if (p.object[i] == p.reference.object[i]) return {Verdict::same, false};
+    return {judge.judge_object(column, row, object), true};
+  }
+  return {judge.judge_drawn(column, row, Vec3(p.warped.position[i]), object, displacement), true};
+}
+
+void judge_rows(const Pictures& p, const PixelJudge& judge, const Surface& surface, const ImageMap& map,
+                const Raster& raster, CompareReport& report) {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   report.displacement.assign(p.reference.object.size(), none);
   report.verdicts.assign(p.reference.object.size(), Verdict::background);
-  parallel_each(std::size_t(p.reference.height), 8, [&](std::size_t line) {
+  std::vector<std::size_t> arbitrated(std::size_t(raster.height), 0);
+  parallel_each(std::size_t(raster.height), 4, [&](std::size_t line) {
     const int row = static_cast<int>(line);
-    for (int column = 0; column < p.reference.width; ++column) {
-      const std::size_t i = line * std::size_t(p.reference.width) + std::size_t(column);
-      report.verdicts[i] = judge(p, column, row);
-      if (p.warped.object[i])
-        report.displacement[i] =
-            static_cast<float>(displacement_px(surface, map, raster, p.warped.position[i], column, row));
+    for (int column = 0; column < raster.width; ++column) {
+      const std::size_t i = p.index(column, row);
+      double displacement = none;
+      if (p.warped.object[i]) displacement = displacement_px(surface, map, raster, p.warped.position[i], column, row);
+      report.displacement[i] = static_cast<float>(displacement);
+      const Judged judged = judge_pixel(p, judge, column, row, displacement);
+      report.verdicts[i] = judged.verdict;
+      arbitrated[line] += judged.arbitrated;
     }
   });
+  report.arbitrated = std::accumulate(arbitrated.begin(), arbitrated.end(), std::size_t{0});
 }
 
 void count_verdicts(const Pictures& p, CompareReport& report) {
+  std::array<std::size_t, 8> count{};
   for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
     report.coverage.reference += p.reference.object[i] != 0;
     report.coverage.warped += p.warped.object[i] != 0;
     report.coverage.both += p.reference.object[i] != 0 && p.warped.object[i] != 0;
-    report.pinholes += report.verdicts[i] == Verdict::pinhole;
-    report.surface_mismatch += report.verdicts[i] == Verdict::mismatch;
+    ++count[static_cast<std::size_t>(report.verdicts[i])];
   }
+  const auto of = [&count](Verdict verdict) { return count[static_cast<std::size_t>(verdict)]; };
+  report.pinholes_at_seams = of(Verdict::seam_pinhole);
+  report.pinholes = of(Verdict::pinhole) + report.pinholes_at_seams;
+  report.surface_mismatch_at_seams = of(Verdict::seam_mismatch);
+  report.surface_mismatch = of(Verdict::mismatch) + report.surface_mismatch_at_seams;
+  report.outline = of(Verdict::outline);
+  report.depth_ties = of(Verdict::depth_tie);
+}
+
+/// A surface that covers a pixel twice is an overlap unless the scene has as many triangles there.
+void find_overlaps(const Pictures& p, const Screen& screen, const PixelJudge& judge, double depth_bound,
+                   CompareReport& report) {
+  if (!screen.has_source) return;
+  report.covers = count_covers(screen, p.warped, depth_bound);
+  std::vector<std::size_t> overlaps(std::size_t(p.warped.height), 0);
+  parallel_each(overlaps.size(), 4, [&](std::size_t line) {
+    const int row = static_cast<int>(line);
+    for (int column = 0; column < p.warped.width; ++column) {
+      const std::size_t i = p.index(column, row);
+      const bool twice = report.covers[i] > 1 && p.object[i] != unknown_object;
+      const bool overlap =
+          twice && !judge.has_triangles(column, row, p.object[i], p.warped.depth[i], report.covers[i]);
+      overlaps[line] += overlap;
+      if (!overlap) report.covers[i] = 0;
+    }
+  });
+  report.overlaps = std::accumulate(overlaps.begin(), overlaps.end(), std::size_t{0});
 }
 
 /// Sums over the pixels in their order, whatever threads filled them.
@@ -190,16 +246,16 @@ void summarise_depth(const Pictures& p, CompareReport& report) {
 }
 
 void summarise_colours(const Pictures& p, CompareReport& report) {
-  double squares = 0, sum = 0;
+  double sum = 0;
   for (std::size_t i = 0; i < p.reference.object.size(); ++i)
-    for (std::size_t k = 4 * i; k < 4 * i + 3; ++k) {
-      const int difference = std::abs(int(p.reference.rgba[k]) - int(p.warped.rgba[k]));
-      squares += difference * difference;
-      if (p.reference.object[i] && p.warped.object[i]) sum += difference;
-    }
-  const double samples = 3.0 * static_cast<double>(p.reference.object.size());
-  if (squares > 0) report.psnr_db = 10 * std::log10(255.0 * 255.0 * samples / squares);
+    for (std::size_t k = 4 * i; k < 4 * i + 3; ++k)
+      if (p.reference.object[i] && p.warped.object[i])
+        sum += std::abs(int(p.reference.rgba[k]) - int(p.warped.rgba[k]));
   if (report.coverage.both) report.colour_difference = sum / (3.0 * static_cast<double>(report.coverage.both));
+  const Pixels reference = colours(p.reference), warped = colours(p.warped);
+  report.psnr_db = psnr_db(reference, warped);
+  report.ssim = structural_similarity(reference, warped);
+  report.flip = flip(reference, warped);
 }
 
 std::string size_text(int width, int height) {
@@ -208,17 +264,20 @@ std::string size_text(int width, int height) {
 
 } // namespace
 
-CompareReport compare_frames(const Frame& reference, const Frame& warped, const Surface& surface, const ImageMap& map,
-                             const Raster& raster, const CompareOptions& options) {
+CompareReport compare_frames(const Frame& reference, const Frame& warped, const Screen& screen, const Surface& surface,
+                             const ImageMap& map, const Raster& raster, const CrossingsAlong& crossings,
+                             const CompareOptions& options) {
   for (const Frame* frame : {&reference, &warped})
     if (frame->width != raster.width || frame->height != raster.height)
       throw Error(ErrorCode::usage, "compare: a picture of " + size_text(frame->width, frame->height) +
                                         " pixels does not fit --size " + size_text(raster.width, raster.height));
-  Pictures pictures{reference, warped, options, {}};
+  Pictures pictures{reference, warped, {}};
   pictures.object = match_objects(pictures);
+  const PixelJudge judge(surface, raster, crossings, options.bound_px, options.depth_bound);
   CompareReport report;
-  judge_rows(pictures, surface, map, raster, report);
+  judge_rows(pictures, judge, surface, map, raster, report);
   count_verdicts(pictures, report);
+  find_overlaps(pictures, screen, judge, options.depth_bound, report);
   summarise_displacement(raster.width, report);
   summarise_depth(pictures, report);
   summarise_colours(pictures, report);
@@ -230,6 +289,8 @@ std::string to_json(const CompareReport& report) {
   const auto& c = report.coverage;
   json["coverage"] = {{"reference", c.reference}, {"warped", c.warped}, {"both", c.both}};
   json["pinholes"] = report.pinholes;
+  json["overlaps"] = nullptr;
+  if (report.overlaps) json["overlaps"] = *report.overlaps;
   json["surface_mismatch"] = report.surface_mismatch;
   const auto& d = report.displacement_px;
   json["displacement_px"] = nullptr;
@@ -244,7 +305,15 @@ std::string to_json(const CompareReport& report) {
     json["depth_rel"] = {{"max", report.depth_rel.max}, {"measured", report.depth_rel.measured}};
   json["psnr_db"] = nullptr;
   if (report.psnr_db) json["psnr_db"] = *report.psnr_db;
+  json["ssim"] = nullptr;
+  if (report.ssim) json["ssim"] = *report.ssim;
+  json["flip"] = {{"mean", report.flip.mean}, {"max", report.flip.max}};
   json["colour_difference"] = report.colour_difference;
+  json["pinholes_at_seams"] = report.pinholes_at_seams;
+  json["surface_mismatch_at_seams"] = report.surface_mismatch_at_seams;
+  json["outline"] = report.outline;
+  json["depth_ties"] = report.depth_ties;
+  json["arbitrated"] = report.arbitrated;
   return json.dump(2);
 }
 

@@ -9,24 +9,22 @@
 
 #include "domewarp/profile/surface.h"
 #include "domewarp/render/frame.h"
+#include "domewarp/render/image_metrics.h"
+#include "domewarp/render/pixel_judge.h"
+#include "domewarp/render/screen.h"
+#include "domewarp/scene/crossing.h"
 #include "domewarp/scene/image.h"
 #include "domewarp/scene/raster.h"
 #include "domewarp/transform/image_map.h"
 
 namespace domewarp {
 
-struct CompareOptions {
-  double depth_tolerance = 0.01; ///< relative; depths farther apart than this belong to different surfaces
-};
+/// The distance of the grid that rasterisers round corners to, px.
+inline constexpr double subpixel_step = 1.0 / 256;
 
-/// What became of one pixel.
-enum class Verdict : std::uint8_t {
-  background,     ///< nothing in either picture
-  same,           ///< the same surface in both, or one next to it
-  reference_only, ///< covered in the reference only, at an outline
-  warped_only,    ///< covered in the warped picture only
-  pinhole,        ///< a hole inside a surface, see CompareReport::pinholes
-  mismatch,       ///< another surface, see CompareReport::surface_mismatch
+struct CompareOptions {
+  double bound_px = 0.5 + subpixel_step; ///< how far from its place anything may be drawn: the file's tolerance and a step
+  double depth_bound = 0.004; ///< relative; surfaces nearer to each other than this may be drawn in either order
 };
 
 /// Pixels that are covered.
@@ -50,36 +48,40 @@ struct DepthReport {
 
 struct CompareReport {
   CoverageReport coverage;
-  /// Pixels uncovered in the warped picture, although the reference covers them and their 8 neighbours.
-  std::size_t pinholes = 0;
-  /// Pixels covered in both, where the reference shows this object at this depth nowhere within one pixel.
-  std::size_t surface_mismatch = 0;
+  std::size_t pinholes = 0; ///< uncovered in the warped picture, though the scene covers everything within the bound
+  std::size_t pinholes_at_seams = 0; ///< those of them where all surfaces end within the bound, because pieces abut
+  std::optional<std::size_t> overlaps; ///< pixels covered more often than the scene has triangles there; none without source positions
+  std::size_t surface_mismatch = 0; ///< a surface that nothing within the bound lets be seen there
+  std::size_t surface_mismatch_at_seams = 0; ///< those of them where all that hides it ends within the bound
+  std::size_t outline = 0;    ///< differ in coverage or surface at an outline, by no more than the bound
+  std::size_t depth_ties = 0; ///< show the other of two surfaces that are nearer to each other than the depth bound
+  std::size_t arbitrated = 0; ///< pixels that were settled by exact rays
   DisplacementReport displacement_px;
   DepthReport depth_rel;
-  std::optional<double> psnr_db; ///< of the red, green and blue bytes of all pixels; none when they are equal
-  double colour_difference = 0;  ///< mean |difference| of those bytes over pixels covered in both, 0..255
+  std::optional<double> psnr_db; ///< none when the pictures are equal
+  std::optional<double> ssim;    ///< none for pictures of less than 11 pixels
+  FlipReport flip;
+  double colour_difference = 0;  ///< mean |difference| of the colour bytes over pixels covered in both, 0..255
 
   std::vector<float> displacement; ///< px, by pixel; NaN where not measured
   std::vector<Verdict> verdicts;   ///< by pixel
+  std::vector<std::uint8_t> covers; ///< by pixel: count_covers() where an overlap was found, else 0
 };
 
 /// Judges a rasterised picture of pre-warped geometry by the ray-traced one: what is covered, which surface is seen,
 /// and how far from its exact place everything is drawn. Displacement needs no reference: the source position of the
 /// warped picture is projected by the branch that owns the pixel's radius (within one pixel of a branch's end by either
 /// neighbour, whichever fits better). The objects of the two pictures are matched by what they show, not by their
-/// numbers.
+/// numbers. A pixel is the same without further questions when both show one object in one plane; all others are
+/// judged by the rays around them (PixelJudge).
+/// @param screen of the scene that the warped frame shows
+/// @param crossings all that the reference draws along a ray, nearest first, exactly
 /// @throws Error(usage) when the frames and the raster differ in size.
-CompareReport compare_frames(const Frame& reference, const Frame& warped, const Surface& surface, const ImageMap& map,
-                             const Raster& raster, const CompareOptions& options = {});
+CompareReport compare_frames(const Frame& reference, const Frame& warped, const Screen& screen, const Surface& surface,
+                             const ImageMap& map, const Raster& raster, const CrossingsAlong& crossings,
+                             const CompareOptions& options = {});
 
 /// The report without its pictures as one JSON object, with the keys that `compare --json` promises.
 std::string to_json(const CompareReport& report);
-
-/// The displacement of every pixel in false colours: blue none, red `full_scale_px` and more; magenta pinholes, white
-/// mismatches, greys where only one picture is covered; below it a strip with the scale.
-Pixels displacement_picture(const CompareReport& report, const Raster& raster, double full_scale_px);
-
-/// |reference - warped| of every channel, four times enlarged; magenta where only one picture is covered.
-Pixels difference_picture(const Frame& reference, const Frame& warped);
 
 } // namespace domewarp

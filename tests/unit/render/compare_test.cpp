@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "domewarp/audit/exact_rays.h"
 #include "domewarp/core/errors.h"
+#include "domewarp/render/compare_pictures.h"
+#include "domewarp/render/drawn_crossings.h"
 #include "domewarp/render/rasterise.h"
 #include "domewarp/render/ray_trace.h"
 #include "render_scenes.h"
@@ -17,16 +20,39 @@ namespace {
 
 using namespace test;
 
+/// A scene with its display and its reference, to judge warped files by.
+class Judge {
+ public:
+  Judge(const Scene& scene, const Display& display)
+      : display_(display), parts_(prepare_parts(scene)), rays_(scene, View{}),
+        reference(ray_trace(scene, View{}, display.surface, display.raster, {})) {}
+
+  CompareReport frames(const Frame& warped, const Screen& screen, const CompareOptions& options = {}) const {
+    const CrossingsAlong crossings = [this](const Vec3& d) { return keep_drawn(parts_, rays_.crossings(d), 0); };
+    return compare_frames(reference, warped, screen, display_.surface, display_.map, display_.raster, crossings,
+                          options);
+  }
+  CompareReport operator()(const Scene& warped, const CompareOptions& options = {}) const {
+    return frames(rasterise(warped, display_.raster, {}), make_screen(warped, display_.raster), options);
+  }
+
+ private:
+  const Display& display_;
+  Parts parts_;
+  ExactRays rays_;
+
+ public:
+  Frame reference;
+};
+
 class Compare : public testing::Test {
  protected:
   const Display display = make_display("1-r^2", 160, 120);
   const Scene source = make_room_with_board();
-  const Frame reference = ray_trace(source, View{}, display.surface, display.raster, {});
+  const Judge judge{source, display};
+  const Frame& reference = judge.reference;
 
-  CompareReport compare(const Scene& warped) const {
-    return compare_frames(reference, rasterise(warped, display.raster, {}), display.surface, display.map,
-                          display.raster);
-  }
+  CompareReport compare(const Scene& warped) const { return judge(warped); }
 };
 
 TEST_F(Compare, AGoodFilePasses) {
@@ -38,6 +64,8 @@ TEST_F(Compare, AGoodFilePasses) {
     EXPECT_EQ(report.coverage.both, pixels);
     EXPECT_EQ(report.pinholes, 0u);
     EXPECT_EQ(report.surface_mismatch, 0u);
+    EXPECT_EQ(report.overlaps, 0u);
+    EXPECT_LT(report.outline, 20u);
     EXPECT_EQ(report.displacement_px.measured, pixels);
     EXPECT_LT(report.displacement_px.max, 0.05);
     EXPECT_LE(report.displacement_px.p999, report.displacement_px.max);
@@ -46,6 +74,9 @@ TEST_F(Compare, AGoodFilePasses) {
     EXPECT_LT(report.depth_rel.max, 0.002);
     EXPECT_GT(report.psnr_db.value_or(0), 30);
     EXPECT_LT(report.colour_difference, 1);
+    EXPECT_GT(report.ssim.value_or(0), 0.95);
+    EXPECT_LT(report.flip.mean, 0.05);
+    EXPECT_LE(report.flip.mean, report.flip.max);
   }
 }
 
@@ -58,16 +89,21 @@ TEST_F(Compare, ACoarseFileIsDisplaced) {
 TEST_F(Compare, AShiftedVertexIsFound) {
   Scene board;
   add(board, make_quad({-0.4, -0.5, -1.2}, {0.9, 0.1, 0.1}, {0, 0.8, 0}, -1));
-  const Frame rays = ray_trace(board, View{}, display.surface, display.raster, {});
+  const Judge of_board(board, display);
   Scene warped = prewarp(board, display, 8);
-  const auto displacement = [&] {
-    return compare_frames(rays, rasterise(warped, display.raster, {}), display.surface, display.map, display.raster)
-        .displacement_px.max;
-  };
-  EXPECT_LT(displacement(), 0.3);
+  EXPECT_LT(of_board(warped).displacement_px.max, 0.3);
   Vec3f& p = warped.meshes.back().primitives[0].positions[60];
   p.x += static_cast<float>(2 * pixel_size(display.raster)) * std::abs(p.z);
-  EXPECT_GT(displacement(), 1);
+  EXPECT_GT(of_board(warped).displacement_px.max, 1);
+}
+
+TEST_F(Compare, AShiftedFileIsMismatchedAtItsOutlines) {
+  Scene warped = prewarp(source, display, 64);
+  for (Primitive& primitive : warped.meshes[warped.instances.back().mesh].primitives)
+    for (Vec3f& p : primitive.positions) p.x += static_cast<float>(3 * pixel_size(display.raster)) * std::abs(p.z);
+  const CompareReport report = compare(warped);
+  EXPECT_GT(report.displacement_px.max, 2.9);
+  EXPECT_GT(report.surface_mismatch, 50u);
 }
 
 /// Takes away the triangle that is seen in a pixel.
@@ -81,10 +117,53 @@ void remove_triangle_at(Scene& warped, const Frame& frame, std::size_t pixel) {
 TEST_F(Compare, ARemovedTriangleIsAPinhole) {
   Scene warped = prewarp(source, display, 12);
   const Frame frame = rasterise(warped, display.raster, {});
-  const CompareReport whole = compare_frames(reference, frame, display.surface, display.map, display.raster);
-  ASSERT_EQ(whole.pinholes, 0u);
+  ASSERT_EQ(compare(warped).pinholes, 0u);
   remove_triangle_at(warped, frame, 100 * 160 + 30);
-  EXPECT_GT(compare(warped).pinholes, 0u);
+  const CompareReport report = compare(warped);
+  EXPECT_GT(report.pinholes, 0u);
+  EXPECT_GT(report.pinholes, report.pinholes_at_seams) << "most lie inside the wall";
+}
+
+TEST_F(Compare, ATriangleThatIsDrawnTwiceIsAnOverlap) {
+  Scene warped = prewarp(source, display, 12);
+  const Frame frame = rasterise(warped, display.raster, {});
+  const std::size_t pixel = 100 * 160 + 30;
+  Primitive& primitive = warped.meshes[std::size_t(warped.instances[frame.object[pixel] - 1].mesh)].primitives[0];
+  const auto first = static_cast<std::size_t>(3 * (frame.triangle[pixel] - 1));
+  for (std::size_t k = 0; k < 3; ++k) primitive.indices.push_back(primitive.indices[first + k]);
+  EXPECT_GT(compare(warped).overlaps.value_or(0), 0u);
+}
+
+TEST_F(Compare, ACrackBetweenUnequalNeighboursIsAPinhole) {
+  // One half of a wall is cut finely, the other is not: its straight edge leaves the fine one's.
+  Scene wall;
+  add(wall, make_quad({-1.5, -1, -1}, {3, 0, 0}, {0, 1.2, 0}, -1));
+  add(wall, make_quad({-1.5, 0.2, -1}, {3, 0, 0}, {0, 1.2, 0}, -1));
+  const Judge of_wall(wall, display);
+  Scene warped = prewarp(wall, display, 64);
+  EXPECT_EQ(of_wall(warped).pinholes, 0u);
+  const Scene coarse = prewarp(wall, display, 1);
+  const auto mesh_of = [](const Scene& scene) { return std::size_t(scene.instances[0].mesh); };
+  warped.meshes[mesh_of(warped)] = coarse.meshes[mesh_of(coarse)];
+  const CompareReport report = of_wall(warped);
+  EXPECT_GT(report.pinholes + report.surface_mismatch, 100u) << to_json(report);
+}
+
+TEST_F(Compare, SurfacesNearerThanTheDepthBoundAreTies) {
+  // The farther of two walls that are 0.1 % apart is drawn in front.
+  Scene walls;
+  add(walls, make_quad({-0.5, -0.5, -1}, {1, 0, 0}, {0, 1, 0}, -1));
+  add(walls, make_quad({-0.5, -0.5, -1.001}, {1, 0, 0}, {0, 1, 0}, -1));
+  const Judge of_walls(walls, display);
+  Scene warped = prewarp(walls, display, 32);
+  EXPECT_EQ(of_walls(warped).depth_ties, 0u);
+  warped.instances.erase(warped.instances.begin());
+  const CompareReport ties = of_walls(warped);
+  EXPECT_GT(ties.depth_ties, 1000u);
+  EXPECT_EQ(ties.surface_mismatch, 0u);
+  const CompareReport strict = of_walls(warped, {.depth_bound = 0.0005});
+  EXPECT_EQ(strict.depth_ties, 0u);
+  EXPECT_GT(strict.surface_mismatch, 1000u);
 }
 
 TEST_F(Compare, AMissingObjectIsASurfaceMismatch) {
@@ -132,40 +211,57 @@ TEST_F(Compare, AFileWithoutSourcePositionsIsStillCompared) {
 TEST_F(Compare, JsonHasThePromisedKeys) {
   const CompareReport report = compare(prewarp(source, display, 24));
   const nlohmann::json json = nlohmann::json::parse(to_json(report));
-  for (const char* key : {"coverage", "pinholes", "surface_mismatch", "displacement_px", "depth_rel", "psnr_db"})
+  for (const char* key : {"coverage", "pinholes", "surface_mismatch", "displacement_px", "depth_rel", "psnr_db",
+                          "overlaps", "ssim", "flip"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["coverage"]["both"], report.coverage.both);
   EXPECT_EQ(json["displacement_px"]["max"], report.displacement_px.max);
 }
 
 TEST_F(Compare, EqualFramesHaveNoDifference) {
-  const CompareReport report = compare_frames(reference, reference, display.surface, display.map, display.raster);
+  const CompareReport report = judge.frames(reference, Screen{});
   EXPECT_FALSE(report.psnr_db.has_value());
   EXPECT_EQ(report.colour_difference, 0);
+  EXPECT_NEAR(report.ssim.value_or(0), 1, 1e-12);
+  EXPECT_EQ(report.flip.max, 0);
+  EXPECT_EQ(report.outline, 0u);
   EXPECT_EQ(report.depth_rel.max, 0);
   EXPECT_LT(report.displacement_px.max, 1e-3) << "rays go through pixel centres";
 }
 
 TEST_F(Compare, SizesMustAgree) {
-  EXPECT_THROW(compare_frames(reference, make_frame(160, 121), display.surface, display.map, display.raster), Error);
+  EXPECT_THROW(judge.frames(make_frame(160, 121), Screen{}), Error);
 }
 
 TEST_F(Compare, PicturesShowWhatWasFound) {
   Scene warped = prewarp(source, display, 12);
   remove_triangle_at(warped, rasterise(warped, display.raster, {}), 100 * 160 + 30);
   const Frame frame = rasterise(warped, display.raster, {});
-  const CompareReport report = compare_frames(reference, frame, display.surface, display.map, display.raster);
-  const Pixels heat = displacement_picture(report, display.raster, 0.5);
+  const CompareReport report = compare(warped);
+  const Pixels heat = displacement_picture(report, 160, 120, 0.5);
   EXPECT_GT(heat.height, display.raster.height);
-  const Pixels difference = difference_picture(reference, frame);
   ASSERT_GT(report.pinholes, 0u);
+  const Pixels difference = difference_picture(reference, frame), cracks = crack_picture(report, frame);
   for (std::size_t i = 0; i < report.verdicts.size(); ++i)
-    if (report.verdicts[i] == Verdict::pinhole)
-      for (const Pixels& pixels : {heat, difference}) {
-        EXPECT_EQ(pixels.rgba[4 * i], 255);
-        EXPECT_EQ(pixels.rgba[4 * i + 1], 0);
-        EXPECT_EQ(pixels.rgba[4 * i + 2], 255);
+    for (const Pixels* pixels : {&heat, &difference, &cracks})
+      if (report.verdicts[i] == Verdict::pinhole) {
+        EXPECT_EQ(std::vector<std::uint8_t>(&pixels->rgba[4 * i], &pixels->rgba[4 * i + 3]),
+                  (std::vector<std::uint8_t>{255, 0, 255}));
       }
+}
+
+TEST_F(Compare, TheWireframeLiesOnTheTrianglesOfThePicture) {
+  const Scene warped = prewarp(source, display, 4);
+  const Frame frame = rasterise(warped, display.raster, {});
+  const Pixels picture = wireframe_picture(frame, make_screen(warped, display.raster));
+  std::size_t white = 0, kept = 0;
+  for (std::size_t i = 0; i < frame.object.size(); ++i) {
+    const bool is_white = picture.rgba[4 * i] == 255 && picture.rgba[4 * i + 1] == 255 && picture.rgba[4 * i + 2] == 255;
+    white += is_white;
+    kept += std::equal(&frame.rgba[4 * i], &frame.rgba[4 * i + 4], &picture.rgba[4 * i]);
+  }
+  EXPECT_GT(white, 500u);
+  EXPECT_EQ(white + kept, frame.object.size());
 }
 
 } // namespace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/render/drawn_crossings.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "domewarp/render/ray_geometry.h"
+#include "domewarp/render/shading.h"
+
+namespace domewarp {
+
+namespace {
+
+/// Parts are ordered by object and first triangle.
+const Part& part_of(const Parts& parts, const Crossing& crossing) {
+  const auto after =
+      std::upper_bound(parts.parts.begin(), parts.parts.end(), crossing, [](const Crossing& c, const Part& part) {
+        return std::tie(c.object, c.triangle) < std::tie(part.object, part.first_triangle);
+      });
+  return *(after - 1);
+}
+
+bool is_drawn(const Parts& parts, const Crossing& crossing) {
+  const Part& part = part_of(parts, crossing);
+  const Look& look = *part.look;
+  if (!crossing.front && !look.double_sided) return false;
+  if (look.alpha_mode == AlphaMode::opaque) return true;
+  RayHit hit;
+  hit.part = &part;
+  hit.triangle = crossing.triangle - part.first_triangle;
+  std::copy(crossing.weights, crossing.weights + 3, hit.weights);
+  const Vec2 uv = transform_uv(look.base, Vec2(interpolate(part.base_uv, hit, Vec4(0))));
+  return is_present(look, albedo_alpha(look, interpolate(part.color, hit, Vec4(1)).a, uv));
+}
+
+} // namespace
+
+std::vector<Crossing> keep_drawn(const Parts& parts, std::vector<Crossing> crossings, double near) {
+  std::erase_if(crossings, [&](const Crossing& c) { return c.distance < near || !is_drawn(parts, c); });
+  return crossings;
+}
+
+} // namespace domewarp
