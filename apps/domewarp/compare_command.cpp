@@ -123,11 +123,9 @@ Comparison compare(const Arguments& arguments) {
   c.reference = ray_trace(scene, record.view, surface, record.raster, rays);
   c.warped = rasterise(warped, record.raster, {.unlit = record.unlit});
   c.screen = make_screen(warped, record.raster);
-  const Parts parts = prepare_parts(scene);
   const ExactRays exact(scene, record.view);
-  const CrossingsAlong crossings = [&](const Vec3& direction) {
-    return keep_drawn(parts, exact.crossings(direction), record.near);
-  };
+  const CrossingsAlong crossings =
+      keep_drawn(scene, [&exact](const Vec3& direction) { return exact.crossings(direction); }, record.near);
   c.report = compare_frames(c.reference, c.warped, c.screen, surface, map, record.raster, crossings, compare_options(record));
   return c;
 }

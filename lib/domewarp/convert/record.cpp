@@ -112,7 +112,8 @@ Record parse_record(const std::string& text, const std::string& name) {
     record.near = json.value("near", 0.0);
     record.unlit = json.value("unlit", false);
     record.error_px = json.contains("error_px") && json["error_px"].is_number() ? json["error_px"].get<double>() : nan;
-    record.depth_error = json.value("depth_error", RefineOptions{}.depth_tolerance);
+    const bool bounded = json.contains("depth_error") && json["depth_error"].is_number();
+    record.depth_error = bounded ? json["depth_error"].get<double>() : RefineOptions{}.depth_tolerance;
     return record;
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::input, name + ": asset.extras.domewarp cannot be understood: " + error.what());

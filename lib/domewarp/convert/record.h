@@ -19,7 +19,8 @@ struct Record {
   double near = 0;
   bool unlit = false;
   double error_px = 0;           ///< certified; nan when nothing bounds it
-  double depth_error = 0;        ///< certified, relative: how far interpolated depths are off
+  double depth_error = 0;        ///< certified, relative: how far interpolated depths are off; the default tolerance
+                                 ///< when the file does not say or nothing bounds it
   std::size_t triangles_in = 0, triangles_out = 0, vertices = 0;
 };
 

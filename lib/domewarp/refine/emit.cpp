@@ -30,7 +30,7 @@ public:
       if (needed[i])
         for (const std::uint32_t parent : derived(first_derived_ + i).parent)
           if (parent >= first_derived_) needed[parent - first_derived_] = 1;
-    for (const Part& part : soup.parts) {
+    for (const SoupPart& part : soup.parts) {
       int stride = 0;
       for (const Attribute& attribute : primitive(part).attributes) stride += attribute.components;
       stride_.push_back(stride);
@@ -60,7 +60,7 @@ public:
 
   int stride(std::uint32_t part) const { return stride_[part]; }
 
-  const Primitive& primitive(const Part& part) const {
+  const Primitive& primitive(const SoupPart& part) const {
     return scene_.meshes[scene_.instances[part.instance].mesh].primitives[part.primitive];
   }
 

@@ -16,7 +16,7 @@ namespace domewarp {
 
 namespace {
 
-const Primitive& primitive_of(const Scene& scene, const Part& part) {
+const Primitive& primitive_of(const Scene& scene, const SoupPart& part) {
   return scene.meshes[scene.instances[part.instance].mesh].primitives[part.primitive];
 }
 
@@ -42,7 +42,7 @@ std::vector<std::vector<Box>> boxes_of(const Scene& scene) {
 /// Drops the parts that cannot be seen.
 void cull_parts(const Scene& scene, const View& view, const ViewCull& cull, Soup& soup) {
   const std::vector<std::vector<Box>> boxes = boxes_of(scene);
-  std::erase_if(soup.parts, [&](const Part& part) {
+  std::erase_if(soup.parts, [&](const SoupPart& part) {
     const Instance& instance = scene.instances[part.instance];
     if (cull.may_be_seen(bounding_ball(boxes[instance.mesh][part.primitive], instance.world, view))) return false;
     soup.outside_view += primitive_of(scene, part).indices.size() / 3;
@@ -50,8 +50,8 @@ void cull_parts(const Scene& scene, const View& view, const ViewCull& cull, Soup
   });
 }
 
-std::vector<Part> list_parts(const Scene& scene) {
-  std::vector<Part> parts;
+std::vector<SoupPart> list_parts(const Scene& scene) {
+  std::vector<SoupPart> parts;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     for (int p = 0; p < static_cast<int>(mesh.primitives.size()); ++p) {
@@ -63,16 +63,16 @@ std::vector<Part> list_parts(const Scene& scene) {
 }
 
 /// Numbers the wedges part by part. Returns how many there are.
-std::size_t number_wedges(const Scene& scene, std::vector<Part>& parts) {
+std::size_t number_wedges(const Scene& scene, std::vector<SoupPart>& parts) {
   std::size_t wedges = 0;
-  for (Part& part : parts) {
+  for (SoupPart& part : parts) {
     part.first_wedge = static_cast<std::uint32_t>(wedges);
     wedges += primitive_of(scene, part).positions.size();
   }
   return wedges;
 }
 
-std::vector<Vec3> eye_positions(const Scene& scene, const View& view, const std::vector<Part>& parts, std::size_t wedges) {
+std::vector<Vec3> eye_positions(const Scene& scene, const View& view, const std::vector<SoupPart>& parts, std::size_t wedges) {
   std::vector<Vec3> positions(wedges);
   parallel_each(parts.size(), 1, [&](std::size_t i) {
     const Primitive& primitive = primitive_of(scene, parts[i]);

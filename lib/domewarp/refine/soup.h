@@ -15,7 +15,7 @@
 namespace domewarp {
 
 /// One primitive of one instance: the unit that keeps its material and attributes.
-struct Part {
+struct SoupPart {
   int instance = 0;
   int primitive = 0;            ///< within the instance's mesh
   std::uint32_t first_wedge = 0; ///< wedge of the primitive's vertex 0
@@ -37,7 +37,7 @@ struct SoupFace {
 
 /// Every triangle of a scene in eye space, welded: points are shared across seams, primitives, meshes and nodes.
 struct Soup {
-  std::vector<Part> parts;
+  std::vector<SoupPart> parts;
   std::vector<Vec3> points;
   std::vector<std::uint32_t> wedge_point; ///< per source vertex
   std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split

@@ -2,8 +2,12 @@
 #include "domewarp/render/drawn_crossings.h"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
+#include <utility>
+#include <vector>
 
+#include "domewarp/render/parts.h"
 #include "domewarp/render/ray_geometry.h"
 #include "domewarp/render/shading.h"
 
@@ -35,9 +39,13 @@ bool is_drawn(const Parts& parts, const Crossing& crossing) {
 
 } // namespace
 
-std::vector<Crossing> keep_drawn(const Parts& parts, std::vector<Crossing> crossings, double near) {
-  std::erase_if(crossings, [&](const Crossing& c) { return c.distance < near || !is_drawn(parts, c); });
-  return crossings;
+CrossingsAlong keep_drawn(const Scene& scene, CrossingsAlong crossings, double near) {
+  const auto parts = std::make_shared<const Parts>(prepare_parts(scene));
+  return [parts, crossings = std::move(crossings), near](const Vec3& direction) {
+    std::vector<Crossing> all = crossings(direction);
+    std::erase_if(all, [&](const Crossing& c) { return c.distance < near || !is_drawn(*parts, c); });
+    return all;
+  };
 }
 
 } // namespace domewarp

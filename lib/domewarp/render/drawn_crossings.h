@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
-#include "domewarp/render/parts.h"
 #include "domewarp/scene/crossing.h"
+#include "domewarp/scene/scene.h"
 
 namespace domewarp {
 
-/// Keeps the crossings that both renderers draw: no culled back faces, no masked or invisible fragments, nothing nearer
-/// than `near`.
-/// @param parts of the scene that was crossed
-std::vector<Crossing> keep_drawn(const Parts& parts, std::vector<Crossing> crossings, double near);
+/// Of the crossings with a scene, those that both renderers draw: no culled back faces, no masked or invisible
+/// fragments, nothing nearer than `near`. The scene must outlive the result.
+CrossingsAlong keep_drawn(const Scene& scene, CrossingsAlong crossings, double near);
 
 } // namespace domewarp

@@ -24,12 +24,12 @@ using namespace test;
 class Judge {
  public:
   Judge(const Scene& scene, const Display& display)
-      : display_(display), parts_(prepare_parts(scene)), rays_(scene, View{}),
+      : display_(display), rays_(scene, View{}),
+        crossings_(keep_drawn(scene, [this](const Vec3& direction) { return rays_.crossings(direction); }, 0)),
         reference(ray_trace(scene, View{}, display.surface, display.raster, {})) {}
 
   CompareReport frames(const Frame& warped, const Screen& screen, const CompareOptions& options = {}) const {
-    const CrossingsAlong crossings = [this](const Vec3& d) { return keep_drawn(parts_, rays_.crossings(d), 0); };
-    return compare_frames(reference, warped, screen, display_.surface, display_.map, display_.raster, crossings,
+    return compare_frames(reference, warped, screen, display_.surface, display_.map, display_.raster, crossings_,
                           options);
   }
   CompareReport operator()(const Scene& warped, const CompareOptions& options = {}) const {
@@ -38,8 +38,8 @@ class Judge {
 
  private:
   const Display& display_;
-  Parts parts_;
   ExactRays rays_;
+  CrossingsAlong crossings_;
 
  public:
   Frame reference;
