@@ -61,7 +61,9 @@ class PixelJudge::Probes {
  public:
   static constexpr int outer = 16, inner = 8, count = 1 + outer + inner;
 
-  Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {}
+  Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {
+    probes_.reserve(count); // references stay valid while others are traced
+  }
 
   /// Beyond r_max there are no crossings, and the direction is zero.
   const Probe& operator[](std::size_t i) {
