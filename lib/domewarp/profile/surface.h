@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "domewarp/core/vectors.h"
+#include "domewarp/profile/interval.h"
 
 namespace domewarp {
 
@@ -32,6 +33,12 @@ struct SurfaceOptions {
 struct RadialJet {
   double r = 0;                  ///< image radius R, after the projector's compensation
   double dr = 0, d2r = 0;        ///< R', R'' with respect to theta
+};
+
+/// Intervals that are certain to contain R, R' and R'' over a range of angles; unbounded where no bound is known (R'
+/// beside a fold, R'' at a kink or a vertical tangent).
+struct RadialEnclosure {
+  Interval r, dr, d2r;
 };
 
 /// One monotone piece of R(theta): the directions theta_low..theta_high and the image radii they fill. R rises with
@@ -100,6 +107,9 @@ public:
 
   /// R, R', R'' at theta, clamped to the branch. Infinite slopes (fold) come back as the largest finite value.
   RadialJet radial(std::size_t branch, double theta) const;
+
+  /// Enclosures over [theta_low, theta_high], clamped to the branch: R' and R'' contain the one-sided derivatives at kinks.
+  RadialEnclosure enclose(std::size_t branch, double theta_low, double theta_high) const;
 
   /// The tangent extension beyond r_max in homogeneous form (valid for vertical tangents): image radius for a direction
   /// no branch contains, after compensation; nothing for a blind direction.

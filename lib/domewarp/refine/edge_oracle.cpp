@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -17,23 +18,13 @@ namespace {
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
 
-/// A bound that an eighth of the edge still exceeds by this factor although samples do not is no bound at all.
-constexpr double hopeless = 64;
-
 Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
 
 Vec2 dehomogenise(const Vec3& q) { return Vec2(q) / q.z; }
 
-Vec3 interpolate(const Mapped& a, const Mapped& b, double t) { return homogeneous(a) * (1 - t) + homogeneous(b) * t; }
-
-/// Bound of the distance in the image between two segments drawn over the same parameter, exact at the ends: the
-/// difference of two rational linear functions has a quadratic numerator, bounded by its Bernstein coefficients.
-double segment_distance(const Vec3& l0, const Vec3& l1, const Vec3& q0, const Vec3& q1) {
-  const Vec2 n0 = Vec2(l0) * q0.z - Vec2(q0) * l0.z;
-  const Vec2 n2 = Vec2(l1) * q1.z - Vec2(q1) * l1.z;
-  const Vec2 n1 = 0.5 * (Vec2(l0) * q1.z + Vec2(l1) * q0.z - Vec2(q0) * l1.z - Vec2(q1) * l0.z);
-  const double largest = std::sqrt(std::max({glm::dot(n0, n0), glm::dot(n1, n1), glm::dot(n2, n2)}));
-  return largest / (std::min(l0.z, l1.z) * std::min(q0.z, q1.z));
+float rounded_up(double value) {
+  const float f = static_cast<float>(value);
+  return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
 }
 
 /// The angle that moves the rim by a tenth of the tolerance.
@@ -47,7 +38,7 @@ double unnoticed_angle(const Surface& surface, std::size_t branch, double tolera
 
 EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchMap& map, VisibleRegion region,
                        const OracleOptions& options)
-    : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map, options.projection),
+    : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
       rim_angle_(unnoticed_angle(surface, branch, options.tolerance)) {}
 
 Mapped EdgeOracle::map_point(const Vec3& eye) const {
@@ -58,7 +49,7 @@ Mapped EdgeOracle::map_point(const Vec3& eye) const {
 }
 
 MappedPoint EdgeOracle::locate(const Vec3& eye, int on) const {
-  MappedPoint point{eye, sides_of(region_, eye), {}};
+  MappedPoint point{direction_of(eye), sides_of(region_, eye), {}};
   if (on >= 0) point.sides[on] = 0;
   if (*std::min_element(point.sides.begin(), point.sides.end()) >= 0) point.mapped = map_point(eye);
   return point;
@@ -94,11 +85,11 @@ std::optional<Split> EdgeOracle::split_at_boundary(const MappedPoint& a, const M
   return std::nullopt;
 }
 
-// The image of a cone is a circle; a chord of it that sags by more than half the tolerance shows as a flat rim.
+// The image of a cone is a circle; a chord of it that sags by more than the tolerance shows as a flat rim.
 bool EdgeOracle::is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const {
   for (std::size_t i = 0; i < region_.boundaries.size(); ++i)
     if (region_.boundaries[i].kind != Boundary::Kind::near_sphere && a.sides[i] == 0 && b.sides[i] == 0 &&
-        glm::length(a.mapped.image) - 0.5 * glm::length(a.mapped.image + b.mapped.image) > 0.5 * options_.tolerance)
+        glm::length(a.mapped.image) - 0.5 * glm::length(a.mapped.image + b.mapped.image) > options_.tolerance)
       return true;
   return false;
 }
@@ -125,59 +116,118 @@ EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b) cons
   return split_by_error(a, b);
 }
 
-EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b) const {
-  const double tolerance = options_.tolerance;
-  EdgeDecision decision;
-  const EdgeBound bound = bound_.edge(a.eye, b.eye, a.mapped.weight, b.mapped.weight);
-  decision.error = static_cast<float>(bound.error());
-  decision.depth_error = static_cast<float>(bound.depth);
-  // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified: samples must do.
-  const bool unbounded = !(bound.error(8) <= hopeless * tolerance);
-  const bool deep_enough = unbounded || bound.depth <= options_.depth_tolerance;
-  if (decision.error <= tolerance && deep_enough) return decision;
+// Interpolated over exact depth at the midpoint, less 1.
+double EdgeOracle::depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const {
+  if (options_.projection == Projection::orthographic) return 0.5 * (a.rho + b.rho) / middle.rho - 1;
+  return 0.5 * (a.mapped.weight + b.mapped.weight) / middle.mapped.weight - 1;
+}
 
-  // The midpoint comes first: where it is off by more than the tolerance it is the vertex that is needed.
-  std::array<Vec3, 9> exact;
-  exact[0] = homogeneous(a.mapped);
-  exact[8] = homogeneous(b.mapped);
+EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b) const {
+  EdgeDecision decision;
+  const double wa = a.mapped.weight, wb = b.mapped.weight;
+  const EdgeBend whole = bound_.edge(a, b, wa, wb);
+  double error = peak_error(0, 0, whole.second, wa, wb);
+  decision.depth_error = rounded_up(whole.depth);
+  decision.error = rounded_up(error);
+  decision.arch = rounded_up(whole.second / (8 * std::min(wa, wb)));
+  if (decision.arch <= options_.tolerance && whole.depth <= options_.depth_tolerance) return decision;
+
+  // The midpoint is the vertex that a split needs, and its deviation is certain; the halves' bounds cover the rest.
   const MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
-  const auto evaluate = [&](int eighth) {
-    exact[eighth] = homogeneous(eighth == 4 ? map_point(middle.eye) : map_point(point_at(a.eye, b.eye, eighth / 8.0)));
-    ++decision.evaluations;
-    return glm::length(dehomogenise(exact[eighth]) - dehomogenise(interpolate(a.mapped, b.mapped, eighth / 8.0)));
-  };
+  decision.evaluations = 1;
   decision.split = Split{0.5, middle};
-  double worst = evaluate(4);
-  if (worst > tolerance || !deep_enough) return decision;
-  for (const int n : {4, 8}) {
-    const int stride = 8 / n;
-    for (int i = stride; i < 8; i += 2 * stride)
-      if (worst <= tolerance) worst = std::max(worst, evaluate(i));
-    if (worst > tolerance) return decision;
-    if (unbounded) continue;
-    double between = 0;
-    for (int i = 0; i < 8; i += stride)
-      between = std::max(between, segment_distance(interpolate(a.mapped, b.mapped, i / 8.0),
-                                                   interpolate(a.mapped, b.mapped, (i + stride) / 8.0), exact[i], exact[i + stride]));
-    decision.error = std::min(decision.error, static_cast<float>(between + bound.error(n)));
-    if (decision.error <= tolerance) {
-      decision.split.reset();
-      return decision;
-    }
-    if (between + bound.error(2 * n) > tolerance) return decision; // more samples cannot help
+  const double wm = 0.5 * (wa + wb);
+  const double off = glm::length(wa * a.mapped.image + wb * b.mapped.image - 2 * wm * middle.mapped.image) / 2;
+  const double depth_off = std::abs(depth_deviation(a, b, middle));
+  if (off > options_.tolerance * wm || depth_off > options_.depth_tolerance) return decision;
+  const EdgeBend first = bound_.edge(a, middle, wa, wm), second = bound_.edge(middle, b, wm, wb);
+  error = std::min(error, std::max(peak_error(0, off, first.second, wa, wm), peak_error(off, 0, second.second, wm, wb)));
+  const double depth = peak_error(0, depth_off, 8 * std::max(first.depth, second.depth), 1, 1) * (1 + depth_off);
+  // (1 - t)(2 off + 8 (2 t - 1) second / 8) on the second half, and its mirror image, stay below the parabola.
+  double arch = std::max(off, 0.5 * off + 0.25 * std::max(first.second, second.second)) / std::min(wa, wb);
+  if (!(arch <= options_.tolerance)) {
+    const double extent = off / wm + image_extent(a, middle, b);
+    error = std::min(error, extent);
+    if (extent <= options_.tolerance) arch = extent;
   }
-  if (unbounded && 2 * worst <= tolerance) {
-    decision.split.reset();
-    decision.error = static_cast<float>(worst);
-    decision.certified = false;
-  }
+  decision.error = rounded_up(error);
+  decision.arch = std::min(decision.arch, rounded_up(arch));
+  decision.depth_error = rounded_up(std::min(whole.depth, depth));
+  if (decision.arch <= options_.tolerance && decision.depth_error <= options_.depth_tolerance) decision.split.reset();
   return decision;
+}
+
+// Beside a fold of the curve R' has no bound; but the image of an edge lies in the part of an annulus that its ends and
+// its extreme angle span, and so do the chords of its halves. R is monotone over a branch.
+double EdgeOracle::image_extent(const MappedPoint& a, const MappedPoint& m, const MappedPoint& b) const {
+  const auto radius = [](const MappedPoint& p) { return glm::length(p.mapped.image); };
+  auto [low, high] = std::minmax({radius(a), radius(m), radius(b)});
+  if (const std::optional<double> t = extremum(Boundary{Boundary::Kind::high_cone}, a.eye, b.eye)) {
+    const double extreme = glm::length(map_point(point_at(a.eye, b.eye, *t)).image);
+    low = std::min(low, extreme);
+    high = std::max(high, extreme);
+  }
+  const Vec2 p = a.mapped.image, q = b.mapped.image;
+  const double turn = std::atan2(std::abs(p.x * q.y - p.y * q.x), glm::dot(p, q));
+  return high - low + high * turn;
 }
 
 double EdgeOracle::diagonal_error(const MappedPoint& a, const MappedPoint& b) const {
   for (const MappedPoint* p : {&a, &b})
     if (*std::min_element(p->sides.begin(), p->sides.end()) < 0) return glm::length(b.eye - a.eye) * 1e100;
-  return bound_.edge(a.eye, b.eye, a.mapped.weight, b.mapped.weight).error();
+  const double wa = a.mapped.weight, wb = b.mapped.weight;
+  return peak_error(0, 0, bound_.edge(a, b, wa, wb).second, wa, wb);
+}
+
+// Two sides have arches, and on every segment parallel to the third the second derivative is that along it. Three such
+// bounds are open; the side with the lowest arch promises the least.
+bool EdgeOracle::is_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches, std::size_t& evaluations) const {
+  if (arches.y < arches.x && arches.y <= arches.z) return is_good(b, c, a, {arches.y, arches.z, arches.x}, evaluations);
+  if (arches.z < arches.x) return is_good(c, a, b, {arches.z, arches.x, arches.y}, evaluations);
+  const Vec3 weights(a.mapped.weight, b.mapped.weight, c.mapped.weight);
+  const double least = 8 * std::min({weights.x, weights.y, weights.z});
+  const double inner = bound_.face(a, b, c, weights, b.eye - a.eye, weights.y - weights.x) / least;
+  if (peak_face(Vec3(0), {inner, arches.y, arches.z}) <= options_.face_tolerance) return true;
+  if (is_good_across(a, b, c, arches)) return true;
+  ++evaluations;
+  return is_good_around(a, b, c, arches);
+}
+
+// Every point lies on a segment parallel to a height, between the side it stands on and one of the others: this proves
+// flat faces good, whose sides leave their interior next to nothing.
+bool EdgeOracle::is_good_across(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const {
+  if (arches.y > arches.x && arches.y >= arches.z) return is_good_across(b, c, a, {arches.y, arches.z, arches.x});
+  if (arches.z > arches.x) return is_good_across(c, a, b, {arches.z, arches.x, arches.y});
+  const Vec3 weights(a.mapped.weight, b.mapped.weight, c.mapped.weight), d = b.eye - a.eye;
+  const double foot = std::clamp(glm::dot(c.eye - a.eye, d) / glm::dot(d, d), 0.0, 1.0);
+  const double least = 8 * std::min({weights.x, weights.y, weights.z});
+  const double second = bound_.face(a, b, c, weights, c.eye - point_at(a.eye, b.eye, foot), weights.z - (1 - foot) * weights.x - foot * weights.y);
+  return arches.x + second / least <= options_.face_tolerance;
+}
+
+// The deviation at the centroid is certain. Towards it the face falls into three, whose spokes have arches.
+bool EdgeOracle::is_good_around(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const {
+  const std::array<const MappedPoint*, 3> corner{&a, &b, &c};
+  constexpr double third = 1.0 / 3.0;
+  const double off = interior_error(a, b, c, Vec3(third));
+  if (off > options_.face_tolerance) return false;
+  const Direction centre = direction_of((a.eye + b.eye + c.eye) * third);
+  const double weight = (a.mapped.weight + b.mapped.weight + c.mapped.weight) * third;
+  std::array<double, 3> spoke;
+  for (int k = 0; k < 3; ++k) {
+    const double w = corner[k]->mapped.weight;
+    spoke[k] = bound_.edge(*corner[k], centre, w, weight).second / (8 * std::min(w, weight));
+  }
+  for (int k = 0; k < 3; ++k) {
+    const MappedPoint &p = *corner[k], &q = *corner[(k + 1) % 3];
+    const double wp = p.mapped.weight, wq = q.mapped.weight, least = 8 * std::min({wp, wq, weight});
+    const bool along_q = spoke[(k + 1) % 3] < spoke[k];
+    const MappedPoint& r = along_q ? q : p;
+    const double inner = bound_.face(p, q, centre, {wp, wq, weight}, centre.eye - r.eye, weight - r.mapped.weight) / least;
+    const Vec3 sides = along_q ? Vec3(arches[k], inner, spoke[k]) : Vec3(arches[k], spoke[(k + 1) % 3], inner);
+    if (peak_face({0, 0, off}, sides) > options_.face_tolerance) return false;
+  }
+  return true;
 }
 
 double EdgeOracle::interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {

@@ -6,12 +6,12 @@
 
 #include "domewarp/refine/error_bound.h"
 #include "domewarp/refine/visible_region.h"
+#include "domewarp/transform/image_map.h"
 
 namespace domewarp {
 
 /// What is known of one point of the mesh: where it is, on which side of each boundary, and where it appears.
-struct MappedPoint {
-  Vec3 eye = Vec3(0);       ///< eye space
+struct MappedPoint : Direction {
   Sides sides{1, 1, 1};
   Mapped mapped;            ///< only where no side is -1
 };
@@ -27,12 +27,13 @@ struct EdgeDecision {
   std::optional<Split> split;
   float error = 0;
   float depth_error = 0;
-  bool certified = true;    ///< false when no finite bound exists and samples had to do (folds of the curve)
+  float arch = 0;           ///< the error at t is at most 4 t (1 - t) arch, image units
   std::uint8_t evaluations = 0;
 };
 
 struct OracleOptions {
-  double tolerance = 0;     ///< image units
+  double tolerance = 0;     ///< image units, for edges
+  double face_tolerance = 0; ///< for faces, a little more: their bound can never fall below that of their sides
   double depth_tolerance = 0; ///< relative
   Projection projection = Projection::perspective;
 };
@@ -55,6 +56,11 @@ public:
   /// Error bound of an edge that is not in the mesh yet, without evaluating the map: for choosing diagonals.
   double diagonal_error(const MappedPoint& a, const MappedPoint& b) const;
 
+  /// Whether the error bound of a face, all of it, is within the tolerance.
+  /// @param arches of its sides ab, bc, ca; all within the tolerance
+  /// @param evaluations raised by the number of times that the map was asked
+  bool is_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches, std::size_t& evaluations) const;
+
   /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 
@@ -65,6 +71,10 @@ private:
   Mapped map_point(const Vec3& eye) const;
   std::optional<Split> split_at_boundary(const MappedPoint& a, const MappedPoint& b, bool& outside) const;
   bool is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const;
+  bool is_good_across(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const;
+  bool is_good_around(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const;
+  double image_extent(const MappedPoint& a, const MappedPoint& middle, const MappedPoint& b) const;
+  double depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const;
   EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b) const;
 
   const BranchMap& map_;

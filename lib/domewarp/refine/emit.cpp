@@ -219,11 +219,13 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
   }
 }
 
-void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegion& region, const Raster& raster,
+void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster,
                  RefineReport& report) {
   std::vector<std::uint32_t> faces(refined.edges.size(), 0);
   for (const RefinedFace& face : refined.faces)
     for (const std::uint32_t edge : face.edge) ++faces[edge];
+  const float tolerance = static_cast<float>(oracle.options().tolerance);
+  const VisibleRegion& region = oracle.region();
   const auto is_rim = [&](const RefinedEdge& edge) {
     for (std::size_t i = 0; i < region.boundaries.size(); ++i)
       if (refined.points[edge.a].sides[i] == 0 && refined.points[edge.b].sides[i] == 0) return true;
@@ -236,7 +238,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegi
     const RefinedEdge& edge = refined.edges[e];
     errors.push_back(edge.error);
     report.depth_error_max = std::max(report.depth_error_max, static_cast<double>(edge.depth_error));
-    report.uncertified_edges += !edge.certified;
+    report.uncertified_edges += edge.error * (1 - 1e-6f) > tolerance;
     if (faces[e] != 1 || is_rim(edge)) continue;
     open.edges.push_back({edge.a, edge.b, 1});
     if (edge.source != RefinedEdge::none && soup.topology.edges[edge.source].faces == 1) continue;

@@ -15,7 +15,7 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
           const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report);
 
 /// Adds what the finished edges of one branch tell: certified errors, and edges that are open without a reason.
-void audit_edges(const Soup& soup, const RefinedMesh& refined, const VisibleRegion& region, const Raster& raster,
+void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster,
                  RefineReport& report);
 
 /// Faces this far outside the image rectangle are dropped, image units.

@@ -2,156 +2,244 @@
 #include "domewarp/refine/error_bound.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 
-#include "domewarp/refine/visible_region.h"
+#include "domewarp/transform/radial_table.h"
 
 namespace domewarp {
 
-double EdgeBound::error(int n) const {
-  const double bend = std::min(weight_bend / (n * n), weight_slope / n);
-  return second_order / (n * n) + (image_change / n) * bend;
-}
-
 namespace {
 
-/// The quantities at one angle, in the order of ErrorBound::Quantity.
-std::array<double, 7> quantities_at(const RadialJet& jet, const Vec3& weight, double theta) {
-  const double s = std::sin(theta), c = std::cos(theta);
-  const double g = weight.x, g1 = weight.y, g2 = weight.z;
-  const double factor = jet.r / s;
-  const double across = (jet.dr * s * c - jet.r) / (s * s);
-  const double mixed = (jet.dr * s - jet.r * c) / (s * s);
-  return {std::abs(g * jet.d2r + 2 * g1 * jet.dr), std::abs(g * across),
-          std::abs(g * mixed + g1 * factor),       std::abs(jet.dr),
-          std::abs(factor),                        std::max(std::abs(g + g2), std::abs(g + g1 * c / s)),
-          std::hypot(g, g1)};
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Room for the rounding of the factors below.
+constexpr double slack = 1e-9;
+
+Range operator+(const Range& a, const Range& b) { return {a.low + b.low, a.high + b.high}; }
+
+Range operator*(const Range& a, const Range& b) {
+  const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+  return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
 }
 
-} // namespace
+Range operator*(double f, const Range& a) { return f >= 0 ? Range{f * a.low, f * a.high} : Range{f * a.high, f * a.low}; }
 
-ErrorBound::ErrorBound(const Surface& surface, std::size_t branch, const BranchMap& map, Projection projection)
-    : projection_(projection), theta_low_(map.branch().theta_low), theta_high_(map.branch().theta_high) {
-  // Eight samples a cell and a margin of the largest difference between neighbours stand for the supremum.
-  constexpr int samples = 8;
-  constexpr double smallest_angle = 1e-4; // below it the quotients cancel; their limits differ by O(1e-4)
-  std::vector<Row> base(cells);
-  const double step = (theta_high_ - theta_low_) / cells;
-  for (int i = 0; i < cells; ++i) {
-    Row low{}, high{};
-    for (int k = 0; k <= samples; ++k) {
-      const double theta = std::clamp(theta_low_ + (i + static_cast<double>(k) / samples) * step, smallest_angle, 3.14159);
-      const Vec3 weight = projection == Projection::perspective ? map.weight_jet(theta) : Vec3(1, 0, 0);
-      const Row row = quantities_at(surface.radial(branch, theta), weight, theta);
-      for (int q = 0; q < quantities; ++q) {
-        low[q] = k == 0 ? row[q] : std::min(low[q], row[q]);
-        high[q] = k == 0 ? row[q] : std::max(high[q], row[q]);
-      }
-    }
-    for (int q = 0; q < quantities; ++q) base[i][q] = high[q] + (high[q] - low[q]) / samples;
-  }
-  levels_.push_back(std::move(base));
-  for (std::size_t width = 2; width <= cells; width *= 2) {
-    const std::vector<Row>& finer = levels_.back();
-    std::vector<Row> level(cells - width + 1);
-    for (std::size_t i = 0; i < level.size(); ++i)
-      for (int q = 0; q < quantities; ++q) level[i][q] = std::max(finer[i][q], finer[i + width / 2][q]);
-    levels_.push_back(std::move(level));
-  }
+Range between(double a, double b) { return a < b ? Range{a, b} : Range{b, a}; }
+
+double magnitude(const Range& a) { return std::max(-a.low, a.high); }
+
+/// Range of (1 - s) from + s to, s in `share`, a subset of [0, 1].
+Range blend(const Range& from, const Range& to, const Range& share) {
+  const auto at = [](double f, double t, double s) { return f * (1 - s) + t * s; };
+  return {std::min(at(from.low, to.low, share.low), at(from.low, to.low, share.high)),
+          std::max(at(from.high, to.high, share.low), at(from.high, to.high, share.high))};
 }
 
-ErrorBound::Row ErrorBound::supremum(double theta_low, double theta_high) const {
-  const double scale = cells / (theta_high_ - theta_low_);
-  const auto cell = [&](double theta) {
-    return static_cast<std::size_t>(std::clamp((theta - theta_low_) * scale, 0.0, cells - 1.0));
-  };
-  const std::size_t first = cell(theta_low), last = cell(theta_high);
-  const std::size_t level = std::bit_width(last - first + 1) - 1;
-  const Row& left = levels_[level][first];
-  const Row& right = levels_[level][last + 1 - (std::size_t{1} << level)];
-  Row row;
-  for (int q = 0; q < quantities; ++q) row[q] = std::max(left[q], right[q]);
-  return row;
-}
-
-namespace {
-
-struct Angles {
-  double low, high;
+/// The heading along an edge: x = cos(chi) against the outward meridian, y = |sin(chi)|; and the angles passed.
+struct Heading {
+  Range x{-1, 1}, y{0, 1}, y2{0, 1};
+  double u_low = 0, u_high = 1;
 };
 
-/// Range of theta on the segment: its ends, and the only interior extremum if there is one.
-Angles angle_range(const Vec3& a, const Vec3& b) {
-  const auto theta = [](const Vec3& p) { return std::atan2(std::hypot(p.x, p.y), -p.z); };
-  auto [low, high] = std::minmax({theta(a), theta(b)});
-  if (const std::optional<double> t = extremum(Boundary{Boundary::Kind::high_cone}, a, b)) {
-    const double middle = theta(a + *t * (b - a));
-    low = std::min(low, middle);
-    high = std::max(high, middle);
+/// With P = sin(theta) cos(chi) = -d cos(theta)/dpsi and N = sin(theta) sin(chi), which is constant, P^2 + N^2 =
+/// sin^2(theta). P is monotone where cos(theta) keeps its sign, theta is extreme where P vanishes.
+Heading heading(const Direction& a, const Direction& b, double pa, double pb, double dz, double normal_z, double area) {
+  Heading h;
+  std::tie(h.u_low, h.u_high) = std::minmax(a.u, b.u);
+  const double za = -a.eye.z, zb = -b.eye.z;
+  const double at_a = (za * pa / a.rho - a.rho * dz) / area, at_b = (zb * pb / b.rho - b.rho * dz) / area;
+  const double n = std::min(1.0, std::abs(normal_z) / area), n2 = n * n, top = std::sqrt(1 - n2);
+  Range p = between(at_a, at_b);
+  if (za * zb < 0) (za > 0 ? p.high : p.low) = za > 0 ? top : -top;
+  if (p.low < 0 && p.high > 0) {
+    const bool is_nearest = at_a < at_b; // theta falls, then rises
+    (is_nearest ? h.u_low : h.u_high) = half_angle_index(n, is_nearest ? top : -top, 1);
   }
-  return {low, high};
-}
-
-/// Range of sin^2 of the heading against the meridian, by Clairaut: sin(chi) = |n_z| / sin(theta).
-Angles heading_range(const Vec3& normal, double normal_length, double scale, const Angles& theta) {
-  if (!(normal_length > 1e-12 * scale)) return {0, 1};
-  const double nz2 = (normal.z / normal_length) * (normal.z / normal_length);
-  const double sin_low = std::sin(theta.low), sin_high = std::sin(theta.high);
-  const double smallest = std::min(sin_low, sin_high);
-  const double largest = theta.low < 1.5707963267948966 && theta.high > 1.5707963267948966 ? 1 : std::max(sin_low, sin_high);
-  return {std::min(1.0, nz2 / (largest * largest) * (1 - 1e-9)), std::min(1.0, nz2 / (smallest * smallest) * (1 + 1e-9))};
-}
-
-double largest_sin_2chi(const Angles& sin2) {
-  if (sin2.low <= 0.5 && sin2.high >= 0.5) return 1;
-  const double s = sin2.high < 0.5 ? sin2.high : sin2.low;
-  return 2 * std::sqrt(s * (1 - s));
+  p.low -= slack;
+  p.high += slack;
+  const auto cosine = [&](double q) { return q / std::sqrt(std::max(q * q + n2, 1e-300)); };
+  h.x = {cosine(p.low) - slack, cosine(p.high) + slack};
+  const double least = h.x.low * h.x.high <= 0 ? 0 : std::min(h.x.low * h.x.low, h.x.high * h.x.high);
+  const double most = std::max(h.x.low * h.x.low, h.x.high * h.x.high);
+  h.y2 = {std::max(0.0, 1 - most), std::min(1.0, 1 - least)};
+  h.y = {std::sqrt(h.y2.low), std::sqrt(h.y2.high)};
+  return h;
 }
 
 } // namespace
 
-EdgeBound ErrorBound::edge(const Vec3& a, const Vec3& b, double wa, double wb) const {
-  const Vec3 d = b - a, normal = glm::cross(a, b);
-  const double length2 = glm::dot(d, d), length = std::sqrt(length2);
-  const double rho_a = glm::length(a), rho_b = glm::length(b);
-  const double area = glm::length(normal);
-  const double h = area / length;
-  const double s_a = glm::dot(a, d) / length, s_b = glm::dot(b, d) / length; // from the foot of the perpendicular
-  const bool foot_inside = s_a < 0 && s_b > 0;
-  const double rho_min = foot_inside ? h : std::min(rho_a, rho_b);
-  const Angles theta = angle_range(a, b);
-  const Angles sin2 = heading_range(normal, area, rho_a * rho_b, theta);
-  const Row sup = supremum(theta.low, theta.high);
+Direction direction_of(const Vec3& eye) {
+  const double r2 = eye.x * eye.x + eye.y * eye.y, rho = std::sqrt(r2 + eye.z * eye.z);
+  return {eye, rho, half_angle_index(std::sqrt(r2), -eye.z, rho)};
+}
 
-  const auto blend = [](double along, double across, double s2) { return along * (1 - s2) + across * s2; };
-  const double radial = std::max(blend(sup[radial_second], sup[cross_second], sin2.low),
-                                 blend(sup[radial_second], sup[cross_second], sin2.high));
-  const double second = std::hypot(radial, sup[mixed_second] * largest_sin_2chi(sin2));
-  const double r2 = sup[slope] * sup[slope], k2 = sup[factor] * sup[factor];
-  const double speed = std::sqrt(std::max(blend(r2, k2, sin2.low), blend(r2, k2, sin2.high)));
-  const double angle = std::atan2(area, glm::dot(a, b));
+EdgeBend ErrorBound::edge(const Direction& a, const Direction& b, double wa, double wb) const {
+  const Vec3 d = b.eye - a.eye, normal = glm::cross(a.eye, b.eye);
+  const double dd = glm::dot(d, d), area2 = glm::dot(normal, normal), area = std::sqrt(area2);
+  const double pa = glm::dot(a.eye, d), pb = glm::dot(b.eye, d);
+  const double a2 = a.rho * a.rho, b2 = b.rho * b.rho;
+  if (!(area > 1e-13 * a.rho * b.rho)) return {}; // one direction: nothing to interpolate
 
-  EdgeBound bound;
-  const double bend = length2 / 8 * (h * h) / (rho_min * rho_min * rho_min);
-  bound.depth = bend / rho_min;
+  const Heading h = heading(a, b, pa, pb, -d.z, normal.z, area);
+  const RadialRange r = ranges_.over(h.u_low, h.u_high);
+
+  const double near2 = pa < 0 && pb > 0 ? area2 / dd : std::min(a2, b2), far2 = std::max(a2, b2);
+  const Range kappa{area / far2, area / near2};
+  // c and W / rho have one stationary point each, c where W / rho has its own or where `turn` changes sign.
+  const double dw = wb - wa, at_foot = wa - dw * pa / dd;
+  const double ca = dw - wa * pa / a2, cb = dw - wb * pb / b2;
+  Range c = between(ca, cb), speed = between(wa / a.rho, wb / b.rho);
+  const auto turn = [&](double p) { return at_foot * (p * p - area2) - 2 * dw * (area2 / dd) * p; };
+  const double turn_a = turn(pa), turn_b = turn(pb), reach = std::sqrt(dw * dw + at_foot * at_foot * (dd * dd / area2));
+  if (turn_a > 0 && turn_b < 0) c.high = std::max(c.high, 0.5 * (dw + reach));
+  if (turn_a < 0 && turn_b > 0) c.low = std::min(c.low, 0.5 * (dw - reach));
+  if (ca * cb < 0) speed.high = std::max(speed.high, reach / std::sqrt(dd));
+  const Range turning{area2 / (far2 * std::sqrt(far2)) * speed.low, area2 / (near2 * std::sqrt(near2)) * speed.high}; // kappa^2 W
+
+  const Range change = 2.0 * (kappa * c);
+  const Range radial = turning * blend(r.along, r.across, h.y2) + change * (r.slope * h.x);
+  const Range sideways = h.y * (2.0 * (turning * (r.twist * h.x)) + change * r.factor);
+  EdgeBend bend;
+  const double kink = r.slope_jump > 0 ? 2 * kappa.high * std::max(wa, wb) * r.slope_jump : 0;
+  bend.second = (std::sqrt(magnitude(radial) * magnitude(radial) + magnitude(sideways) * magnitude(sideways)) + kink) * (1 + slack);
+  if (!(bend.second < infinity)) bend.second = infinity;
+
+  // Seen along the chord of the unit directions, |chord| >= cos(psi/2), the interpolated distance is 1 / |chord| times the
+  // exact one, and the interpolated g differs from the exact one by at most a quarter of the range of its slope.
+  const double cosine = glm::dot(a.eye, b.eye) / (a.rho * b.rho), secant2 = 2 / (1 + cosine);
+  bend.depth = std::sqrt(secant2) - 1;
   if (projection_ == Projection::perspective) {
-    const double w_min = std::min(wa, wb);
-    bound.second_order = bend * second / w_min;
-    bound.image_change = speed * angle;
-    bound.weight_bend = bend * sup[weight_curvature] / w_min;
-    bound.weight_slope = 0.5 * length * sup[weight_gradient] / w_min;
-    bound.depth = std::min(bound.weight_bend, bound.weight_slope);
-    return bound;
+    const Range rate = area / (a.rho * b.rho) * (Range{1, secant2} * (r.weight_slope * h.x));
+    const double g_error = 0.25 * (rate.high - rate.low) + r.weight_jump;
+    bend.depth += (1 + bend.depth) * g_error / r.weight.low;
   }
-  const double peak = h / std::sqrt(3.0); // where h |s| / rho^4 is largest
-  const auto speed_change = [&](double s) { return h * std::abs(s) / ((h * h + s * s) * (h * h + s * s)); };
-  double change = std::max(speed_change(s_a), speed_change(s_b));
-  if ((s_a < peak && peak < s_b) || (s_a < -peak && -peak < s_b)) change = 3 * std::sqrt(3.0) / (16 * h * h);
-  bound.second_order = bend / rho_min * second + length2 / 4 * change * speed;
-  return bound;
+  return bend;
+}
+
+namespace {
+
+/// Azimuths over a face against its centroid's, theta, and what follows from them for the components of a vector.
+struct FaceFrame {
+  double cos_centre = 1, sin_centre = 0;
+  Range cos_azimuth{-1, 1}, sin_azimuth{-1, 1}, cosine, sine;
+  double u_low = 0, u_high = 1;
+};
+
+/// The theta range of an edge beyond its ends.
+void include_extreme(const Direction& a, const Direction& b, FaceFrame& frame) {
+  const Vec3 d = b.eye - a.eye;
+  const double at_a = a.rho * a.rho * d.z - a.eye.z * glm::dot(a.eye, d), at_b = b.rho * b.rho * d.z - b.eye.z * glm::dot(b.eye, d);
+  if (at_a * at_b >= 0) return;
+  const Vec3 normal = glm::cross(a.eye, b.eye);
+  const double side = std::hypot(normal.x, normal.y), n = std::abs(normal.z), area = glm::length(normal);
+  (at_a < 0 ? frame.u_low : frame.u_high) = half_angle_index(n, at_a < 0 ? side : -side, area);
+}
+
+double cosine_at(double u) { return (1 - 2 * u) / (1 - 2 * u + 2 * u * u); }
+double sine_at(double u) { return 2 * u * (1 - u) / (1 - 2 * u + 2 * u * u); }
+
+FaceFrame face_frame(const Direction& a, const Direction& b, const Direction& c) {
+  FaceFrame frame;
+  const std::array<const Direction*, 3> corner{&a, &b, &c};
+  std::tie(frame.u_low, frame.u_high) = std::minmax({a.u, b.u, c.u});
+  std::array<double, 3> normal_z;
+  for (int k = 0; k < 3; ++k) {
+    const Direction &p = *corner[k], &q = *corner[(k + 1) % 3];
+    const double low = frame.u_low, high = frame.u_high;
+    include_extreme(p, q, frame);
+    frame.u_low = std::min(low, frame.u_low);
+    frame.u_high = std::max(high, frame.u_high);
+    normal_z[k] = p.eye.x * q.eye.y - p.eye.y * q.eye.x;
+  }
+  const auto [least, most] = std::minmax_element(normal_z.begin(), normal_z.end());
+  if (*least > 0 || *most < 0) { // an axis pierces the face; where it meets a side the side has told
+    (a.eye.z + b.eye.z + c.eye.z < 0 ? frame.u_low : frame.u_high) = a.eye.z + b.eye.z + c.eye.z < 0 ? 0 : 1;
+  } else if (const double x = a.eye.x / a.rho + b.eye.x / b.rho + c.eye.x / c.rho, y = a.eye.y / a.rho + b.eye.y / b.rho + c.eye.y / c.rho,
+             size = std::sqrt(x * x + y * y);
+             size > 0) {
+    frame.cos_centre = x / size;
+    frame.sin_centre = y / size;
+    Range cosines{1, 1}, sines{1, -1};
+    for (const Direction* p : corner) {
+      const double r = std::sqrt(p->eye.x * p->eye.x + p->eye.y * p->eye.y);
+      const double along = (p->eye.x * frame.cos_centre + p->eye.y * frame.sin_centre) / r;
+      const double across = (p->eye.y * frame.cos_centre - p->eye.x * frame.sin_centre) / r;
+      cosines.low = r > 0 ? std::min(cosines.low, along) : -1; // a corner on the axis has every azimuth
+      if (!(cosines.low > 0)) break;
+      sines = {std::min(sines.low, across), std::max(sines.high, across)};
+    }
+    if (cosines.low > 0) {
+      frame.cos_azimuth = {cosines.low - slack, 1};
+      frame.sin_azimuth = {sines.low - slack, sines.high + slack};
+    }
+  }
+  frame.cosine = {cosine_at(frame.u_high) - slack, cosine_at(frame.u_low) + slack};
+  frame.sine = between(sine_at(frame.u_low), sine_at(frame.u_high));
+  if (frame.u_low < 0.5 && frame.u_high > 0.5) frame.sine.high = 1;
+  frame.sine = {frame.sine.low - slack, frame.sine.high + slack};
+  return frame;
+}
+
+Range square(const Range& a) {
+  const double p = a.low * a.low, q = a.high * a.high;
+  return {a.low <= 0 && a.high >= 0 ? 0 : std::min(p, q), std::max(p, q)};
+}
+
+} // namespace
+
+double ErrorBound::face(const Direction& a, const Direction& b, const Direction& c, const Vec3& weights, const Vec3& v, double dw) const {
+  const FaceFrame frame = face_frame(a, b, c);
+  const RadialRange r = ranges_.over(frame.u_low, frame.u_high);
+  const double x = v.x * frame.cos_centre + v.y * frame.sin_centre, y = v.y * frame.cos_centre - v.x * frame.sin_centre;
+  const Range outwards = x * frame.cos_azimuth + y * frame.sin_azimuth;
+  const Range along_meridian = frame.cosine * outwards + v.z * frame.sine; // v . e_theta, forward is -z
+  const Range across = y * frame.cos_azimuth + (-x) * frame.sin_azimuth;   // v . e_phi
+  const Range away = frame.sine * outwards + (-v.z) * frame.cosine;        // v . e_rho
+
+  // Seen along the triangle of unit directions d_i, |sum m_i d_i|^2 = 1 - sum m_i m_j |d_i - d_j|^2 >= 1 - max / 3.
+  const auto gap2 = [](const Direction& p, const Direction& q) { const Vec3 g = p.eye / p.rho - q.eye / q.rho; return glm::dot(g, g); };
+  const double sag = std::sqrt(std::max(1e-6, 1 - std::max({gap2(a, b), gap2(b, c), gap2(c, a)}) / 3)) - slack;
+  const auto [near, far] = std::minmax({a.rho, b.rho, c.rho});
+  const Range inverse{1 / far, 1 / (near * sag)};
+  const auto [least, most] = std::minmax({weights[0] / a.rho, weights[1] / b.rho, weights[2] / c.rho});
+  const Range speed{least, most / sag}; // W / rho
+  const Range turn = Range{dw, dw} + -1.0 * (speed * away); // c of ErrorBound::edge
+  const Range scale = speed * inverse, change = 2.0 * (inverse * turn);
+  const Range radial = scale * (r.along * square(along_meridian) + r.across * square(across)) + change * (r.slope * along_meridian);
+  const Range sideways = 2.0 * (scale * (r.twist * (along_meridian * across))) + change * (r.factor * across);
+  const double kink = r.slope_jump > 0 ? 2 * magnitude(along_meridian) * magnitude(along_meridian) * scale.high * r.slope_jump : 0;
+  const double bound = std::sqrt(magnitude(radial) * magnitude(radial) + magnitude(sideways) * magnitude(sideways)) + kink;
+  return bound < infinity ? bound * (1 + slack) : infinity;
+}
+
+double peak_face(const Vec3& at, const Vec3& arch) {
+  double peak = 0;
+  for (int k = 0; k < 3; ++k) peak = std::max(peak, peak_error(at[k], at[(k + 1) % 3], 8 * arch[k], 1, 1));
+  // Stationary in s = l1, t = l2: [p q; q r] (s, t) = (x, y).
+  const double p = 8 * arch.z, r = 8 * arch.y, q = -4 * (arch.x - arch.y - arch.z);
+  const double x = at.x - at.z + 4 * arch.z, y = at.y - at.z + 4 * arch.y, determinant = p * r - q * q;
+  if (!(determinant > 0)) return peak; // no maximum inside
+  const double s = (x * r - y * q) / determinant, t = (y * p - x * q) / determinant, u = 1 - s - t;
+  if (!(s > 0 && t > 0 && u > 0)) return peak;
+  return std::max(peak, s * at.x + t * at.y + u * at.z + 4 * (s * t * arch.x + t * u * arch.y + u * s * arch.z));
+}
+
+double peak_error(double at_a, double at_b, double second, double wa, double wb) {
+  if (!(second < infinity)) return infinity;
+  const double ends = std::max(at_a / wa, at_b / wb);
+  const double half = 0.5 * second, rise = at_b - at_a + half, dw = wb - wa;
+  // Stationary where (rise - 2 half t)(wa + dw t) = dw (at_a + rise t - half t^2).
+  const double start = rise * wa - at_a * dw;
+  const double root = half * half * wa * wa + half * dw * start;
+  if (!(start > 0) || !(root >= 0)) return ends;
+  const double t = start / (half * wa + std::sqrt(root));
+  if (!(t < 1)) return ends;
+  return std::max(ends, (at_a + rise * t - half * t * t) / (wa + dw * t));
 }
 
 } // namespace domewarp

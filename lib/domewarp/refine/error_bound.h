@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "domewarp/core/vectors.h"
 #include "domewarp/profile/surface.h"
-#include "domewarp/transform/image_map.h"
+#include "domewarp/refine/radial_ranges.h"
 
 namespace domewarp {
 
@@ -19,47 +16,55 @@ struct Mapped {
   double weight = 1;
 };
 
-/// Bounds for one edge, as functions of the number n of equal parts it is cut into.
-struct EdgeBound {
-  double second_order = 0;   ///< L^2/8 sup |second derivative of the image error|, image units
-  double image_change = 0;   ///< sup of the image speed times the angle: how far the image moves along the edge
-  double weight_bend = 0;    ///< relative error of interpolating w, from its second derivative
-  double weight_slope = 0;   ///< the same from its first derivative, for edges near a kink of w on the axis
-  double depth = 0;          ///< relative error of the interpolated depth (distance)
+/// A point about the eye with what bounds need of it.
+struct Direction {
+  Vec3 eye = Vec3(0); ///< eye space
+  double rho = 0;     ///< |eye|
+  double u = 0;       ///< half-angle index of theta
+};
+Direction direction_of(const Vec3& eye);
 
-  /// Largest distance between the exact image and its interpolation between neighbours of n + 1 equidistant exact points.
-  double error(int n = 1) const;
+/// Suprema over one edge.
+struct EdgeBend {
+  double second = 0; ///< of |d^2 (W I) / dt^2|, t from 0 to 1 along the edge; infinite where nothing is known
+  double depth = 0;  ///< of the relative error of the interpolated depth
 };
 
-/// Tables of suprema over theta of what the second derivative of the image needs, for one branch.
+/// Certified bounds of what a rasteriser's interpolation does to the image, for one branch.
 ///
-/// Derivation. Q(p) = w (x', y', 1) is homogeneous of degree one, so along a line at distance h from the eye
-/// Q'' = (h^2 / rho^3) (S + S_psipsi) with Q = rho S and psi the arc length of the direction. A rasteriser draws the
-/// linear interpolant L of Q; its error in the image is (D_xy - I D_w) / L_w, D = L - Q. Splitting off the change of the
-/// image I along the edge,
-///   |error| <= L^2/8 (h^2/rho^3) sup |g I_psipsi + 2 g_psi I_psi| / w_min + |Delta I| |D_w| / w_min.
-/// In the frame of the meridian, with c = cos(chi) and s = sin(chi) of the heading,
-///   I_psipsi + 2 (g'/g) ... = ((R'' + 2 (g'/g) R') c^2 + B s^2,  2 s c (C + (g'/g) R / sin(theta))),
-///   B = (R' sin cos - R) / sin^2,  C = (R' sin - R cos) / sin^2,
-/// and g = R'^(-1/2) makes the first coefficient vanish. Orthographic output has g = 1, and the term 2 h |s| / rho^4 |I_psi|
-/// of the changing speed along the line instead of the weight's.
+/// Derivation. A rasteriser interpolates the homogeneous vertices w (I, 1) linearly, so at parameter t of an edge it draws
+/// the point [(1 - t) w_a I_a + t w_b I_b] / W(t), W(t) = (1 - t) w_a + t w_b. Compared with the exact image I(t),
+///   error(t) = (interpolant of W I - W I) / W,    |error(t)| <= t (1 - t) / 2 sup |(W I)''| / W(t),
+/// where W is this linear function: the weights between the vertices do not matter, nor does how they were chosen, and
+/// orthographic output is the case W = 1. With p(t) = a + t d, kappa = |a x b| / rho^2 = dpsi/dt the rate of the angle,
+///   (W I)'' = kappa^2 W I_psipsi + 2 kappa c I_psi,   c = W' - W (p . d) / rho^2,
+/// and in the frame of the meridian, with x = cos(chi), y = sin(chi) of the heading,
+///   I_psi = (R' x, K y),   I_psipsi = (A x^2 + B y^2, 2 C x y).
+/// All factors are bounded over the edge by monotone pieces in closed form; x and y by Clairaut's relation.
 class ErrorBound {
 public:
-  ErrorBound(const Surface& surface, std::size_t branch, const BranchMap& map, Projection projection);
+  ErrorBound(const Surface& surface, std::size_t branch, double theta_low, double theta_high, Projection projection)
+      : projection_(projection), ranges_(surface, branch, theta_low, theta_high) {}
 
-  /// @param a,b eye space, both inside the branch; wa, wb their weights
-  EdgeBound edge(const Vec3& a, const Vec3& b, double wa, double wb) const;
+  /// @param wa,wb weights at the ends
+  EdgeBend edge(const Direction& a, const Direction& b, double wa, double wb) const;
+
+  /// Supremum over a face of |D^2 (W I)[v, v]|: of the second derivative along every segment v within it.
+  /// @param weights of a, b, c
+  /// @param dw change of the linear weight along v
+  double face(const Direction& a, const Direction& b, const Direction& c, const Vec3& weights, const Vec3& v, double dw) const;
 
 private:
-  static constexpr int cells = 1024;
-  enum Quantity { radial_second, cross_second, mixed_second, slope, factor, weight_curvature, weight_gradient, quantities };
-  using Row = std::array<double, quantities>;
-
-  Row supremum(double theta_low, double theta_high) const;
-
   Projection projection_;
-  double theta_low_, theta_high_;
-  std::vector<std::vector<Row>> levels_; ///< sparse table: levels_[k][i] covers cells i .. i + 2^k - 1
+  RadialRanges ranges_;
 };
+
+/// Largest value over t in [0, 1] of [(1 - t) at_a + t at_b + t (1 - t) / 2 second] / [(1 - t) wa + t wb]: the error
+/// bound of an edge whose ends are off by at_a / wa and at_b / wb already.
+double peak_error(double at_a, double at_b, double second, double wa, double wb);
+
+/// Largest value over the triangle, l barycentric, of l1 at.x + l2 at.y + l3 at.z + 4 (l1 l2 arch.x + l2 l3 arch.y +
+/// l3 l1 arch.z): the error bound of a face whose corners are off by `at` and whose sides have such arches.
+double peak_face(const Vec3& at, const Vec3& arch);
 
 } // namespace domewarp

@@ -32,7 +32,7 @@ public:
 
   MappedPoint operator()(const Vec3& eye) const {
     const ImagePoint image = project(surface_, map_, eye);
-    MappedPoint point{eye, {1, 1, 1}, {{image.x, image.y}, 1}};
+    MappedPoint point{direction_of(eye), {1, 1, 1}, {{image.x, image.y}, 1}};
     if (image.state != PointState::visible) point.sides.fill(-1);
     if (image.state == PointState::blind) point.mapped.image = extreme_radius * side(polar(eye));
     if (projection_ == Projection::perspective) point.mapped.weight = weight(eye);

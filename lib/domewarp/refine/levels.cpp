@@ -87,7 +87,7 @@ private:
         const EdgeDecision decision = oracle_.decide(mesh_.points[edge.a], mesh_.points[edge.b]);
         edge.error = decision.error;
         edge.depth_error = decision.depth_error;
-        edge.certified = decision.certified;
+        edge.arch = decision.arch;
         blocks[i].evaluations += decision.evaluations;
         if (decision.split) blocks[i].splits.emplace_back(static_cast<std::uint32_t>(e), decision.split->point);
       }
@@ -283,19 +283,11 @@ private:
     return std::nullopt;
   }
 
-  // A quadratic map is off inside by 4 sum l_i l_j m_ij with m_ij the deviation at the middle of edge ij: at most
-  // 4/9 of the sum of the three edge errors at the centroid. Only where that could matter is the map asked.
   std::optional<Vec3> error_vertex(const RefinedFace& face, FaceBlock& block) const {
-    const double tolerance = oracle_.options().tolerance;
-    double sum = 0;
-    for (const std::uint32_t edge : face.edge) sum += mesh_.edges[edge].error;
-    if (4.0 / 9.0 * sum <= tolerance) return std::nullopt;
-    constexpr double third = 1.0 / 3.0;
-    for (const Vec3& weights : {Vec3(third), Vec3(0.5, 0.25, 0.25), Vec3(0.25, 0.5, 0.25), Vec3(0.25, 0.25, 0.5)}) {
-      ++block.evaluations;
-      if (oracle_.interior_error(corner(face, 0), corner(face, 1), corner(face, 2), weights) > tolerance) return Vec3(third);
-    }
-    return std::nullopt;
+    Vec3 arches;
+    for (int k = 0; k < 3; ++k) arches[k] = mesh_.edges[face.edge[k]].arch;
+    if (oracle_.is_good(corner(face, 0), corner(face, 1), corner(face, 2), arches, block.evaluations)) return std::nullopt;
+    return Vec3(1.0 / 3.0);
   }
 
   void insert(const RefinedFace& face, const Vec3& weights, FaceBlock& block) const {

@@ -143,7 +143,7 @@ private:
       out_.indices.insert(out_.indices.end(), {from, last});
       errors.push_back(piece.decision.error);
       report_.depth_error_max = std::max(report_.depth_error_max, static_cast<double>(piece.decision.depth_error));
-      report_.uncertified_edges += !piece.decision.certified;
+      report_.uncertified_edges += piece.decision.error > oracle_.options().tolerance;
     }
   }
 

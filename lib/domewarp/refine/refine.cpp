@@ -17,9 +17,12 @@ namespace domewarp {
 
 namespace {
 
-/// Edges are refined to this share of the tolerance. The rest is for the interiors, which are judged at four points (up
-/// to 1.8 % worse in between on the measured scenes), for rounding to float32 and for the rasteriser's subpixel grid.
-constexpr double working_share = 0.97;
+/// Edges are refined to this share of the tolerance, faces to the tolerance less the rounding to float32: the bound of a
+/// face cannot fall below that of its sides, and without the difference no vertex inside would ever be enough.
+constexpr double edge_share = 0.97;
+
+/// Image coordinates are quotients of two float32 numbers; r_max is at most a few image units.
+constexpr double file_rounding = 0x1p-22;
 
 class Stopwatch {
 public:
@@ -120,8 +123,11 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   report.near = options.near > 0 ? options.near : std::max(1e-5 * std::max(extent(soup), lines.extent), 1e-30);
   report.soup_ms = watch.lap();
 
-  OracleOptions oracle_options{working_share * options.tolerance_px * pixel_size(raster), options.depth_tolerance, options.projection};
-  if (options.subdivision == Subdivision::none) oracle_options.tolerance = oracle_options.depth_tolerance = 1e30;
+  const double tolerance = options.tolerance_px * pixel_size(raster);
+  OracleOptions oracle_options{edge_share * tolerance, std::max(edge_share * tolerance, tolerance - file_rounding), options.depth_tolerance,
+                               options.projection};
+  if (options.subdivision == Subdivision::none)
+    oracle_options.tolerance = oracle_options.face_tolerance = oracle_options.depth_tolerance = 1e30;
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options);
@@ -132,7 +138,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
     report.levels_ms += watch.lap();
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
-    audit_edges(soup, refined, oracle.region(), raster, report);
+    audit_edges(soup, refined, oracle, raster, report);
     emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/refine/visible_region.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,12 +9,14 @@
 
 namespace domewarp {
 
+double highest_angle(const Branch& branch) { return std::min(branch.theta_high, std::numbers::pi - blind_angle); }
+
 VisibleRegion make_visible_region(const Branch& branch, double near) {
   VisibleRegion region;
   if (branch.theta_low > 0)
     region.boundaries.push_back({Boundary::Kind::low_cone, std::sin(branch.theta_low), std::cos(branch.theta_low), 0});
-  if (branch.theta_high < std::numbers::pi)
-    region.boundaries.push_back({Boundary::Kind::high_cone, std::sin(branch.theta_high), std::cos(branch.theta_high), 0});
+  const double high = highest_angle(branch);
+  region.boundaries.push_back({Boundary::Kind::high_cone, std::sin(high), std::cos(high), 0});
   region.boundaries.push_back({Boundary::Kind::near_sphere, 0, 0, near});
   return region;
 }

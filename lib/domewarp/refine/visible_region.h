@@ -26,6 +26,11 @@ struct VisibleRegion {
   std::vector<Boundary> boundaries; ///< at most three, in a fixed order
 };
 
+/// The image of the direction straight behind is a circle, which no vertex can be: a lens of 360 degrees is cut this
+/// close to it (radians; 0.07 px at 4096 rows).
+inline constexpr double blind_angle = 1e-4;
+double highest_angle(const Branch& branch);
+
 /// @param near radius of the sphere around the eye in which nothing is drawn, > 0, scene units
 VisibleRegion make_visible_region(const Branch& branch, double near);
 

@@ -41,7 +41,7 @@ TEST(ErrorBound, CoversTheSampledErrorOfRandomEdges) {
   for (const Case& c : cases()) {
     const Surface surface(c.surface, std::sqrt(2.0));
     const ImageMap map = make_image_map(surface, Method::automatic);
-    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-4, 1, c.projection});
+    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-4, 1e-4, 1, c.projection});
     int tested = 0, violations = 0;
     for (int i = 0; i < 40000; ++i) {
       const Vec3 p(normal(random), normal(random), normal(random));
@@ -64,7 +64,7 @@ TEST(ErrorBound, CoversTheSampledErrorOfRandomEdges) {
 TEST(ErrorBound, IsNoTriviallyLargeNumber) {
   const Surface surface(curve("1-r^2"), std::sqrt(2.0));
   const ImageMap map = make_image_map(surface, Method::automatic);
-  const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-4, 1, Projection::orthographic});
+  const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-4, 1e-4, 1, Projection::orthographic});
   const MappedPoint a = oracle.locate({0.5, 0.3, -1}), b = oracle.locate({0.55, 0.35, -1});
   EXPECT_LT(oracle.diagonal_error(a, b), 3 * true_error(oracle, a, b, 0.5));
 }
@@ -74,7 +74,7 @@ TEST(EdgeOracle, SplitsTheEdgeWhoseMidpointErrorVanishes) {
   const Surface surface(lens(Lens::equidistant, 180), std::sqrt(2.0));
   const ImageMap map = make_image_map(surface, Method::automatic);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {0.5 * 2 / 4096, 1, projection});
+    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {0.5 * 2 / 4096, 0.5 * 2 / 4096, 1, projection});
     const MappedPoint a = oracle.locate({0, -1, -1.7}), b = oracle.locate({0, 1, -1.7}); // below 60 degrees: judged by error
     EXPECT_LT(true_error(oracle, a, b, 0.5), 1e-12);
     EXPECT_TRUE(oracle.decide(a, b).split.has_value());

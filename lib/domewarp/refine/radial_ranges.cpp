@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// R' and R'' over a cell are hulls of interval enclosures over parts of it, halved until they are narrow. B and C have
+// a removable singularity on the axis, where their quotients cancel. Both follow from their value at the cell's start:
+//   (B sin^2)' = R'' sin cos - 2 R' sin^2,   (C sin^2)' = (R'' + R) sin,   K' = C,
+// so with l = sin^2(theta_0) / sin^2(theta), up to 90 degrees,
+//   B = l B_0 + (1 - l) R''/2 - 2 R' [0, theta - theta_0],   C = l C_0 + (1 - l) (R'' + R) / (cos + cos_0),
+// which needs no value at the start on the axis, where l = 0.
+#include "domewarp/refine/radial_ranges.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "domewarp/core/parallel.h"
+#include "domewarp/transform/image_map.h"
+#include "domewarp/transform/radial_table.h"
+#include "domewarp/transform/weight.h"
+
+namespace domewarp {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double right_angle = std::numbers::pi / 2;
+
+double angle_at(double u) { return 2 * std::atan2(u, 1 - u); }
+double index_of(double theta) { return half_angle_index(std::sin(theta), std::cos(theta), 1); }
+
+Interval unite(const Interval& a, const Interval& b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+double width(const Interval& a) { return a.hi - a.lo; }
+double magnitude(const Interval& a) { return std::max(std::abs(a.lo), std::abs(a.hi)); }
+
+/// Hull of the enclosures over the parts of one cell.
+struct Smooth {
+  Interval r{infinity, -infinity}, dr{infinity, -infinity}, d2r{infinity, -infinity};
+  double jump = 0; ///< change of R' over parts too narrow to matter in which R'' has no bound
+};
+
+class CellEncloser {
+public:
+  CellEncloser(const Surface& surface, std::size_t branch) : surface_(surface), branch_(branch) {}
+
+  Smooth enclose(double low, double high) {
+    sum_ = {};
+    budget_ = 4000;
+    add(low, high, 0);
+    if (sum_.d2r.lo > sum_.d2r.hi) sum_.d2r = Interval(0);
+    if (std::isinf(sum_.jump)) { // a fold: no length of edge has a bound here
+      sum_.d2r = entire(Regularity::unknown);
+      sum_.jump = 0;
+    }
+    return sum_;
+  }
+
+private:
+  // Narrower than this nothing shows: 1e-11 of an image's width.
+  static constexpr double narrowest = 1e-11;
+  /// A vertical tangent leaves R' continuous while enclosures of R'' widen without bound: half their size is narrow
+  /// enough there.
+  static constexpr double unnoticed_jump = 5e-7;
+
+  void add(double low, double high, int depth) {
+    const RadialEnclosure e = surface_.enclose(branch_, low, high);
+    const bool is_bounded_here = is_bounded(e.d2r) && is_bounded(e.dr);
+    const double size = magnitude(e.d2r) + magnitude(e.dr) + magnitude(e.r);
+    const bool is_narrow = is_bounded_here && width(e.d2r) <= (depth < 7 ? 0.03 : 0.5) * size;
+    const bool is_small_jump = width(e.dr) <= unnoticed_jump * (magnitude(e.dr) + magnitude(e.r));
+    const double middle = 0.5 * (low + high);
+    const bool can_split = high - low > narrowest && middle > low && middle < high && budget_ > 0;
+    if (!is_narrow && !is_small_jump && can_split) {
+      --budget_;
+      add(low, middle, depth + 1);
+      add(middle, high, depth + 1);
+      return;
+    }
+    sum_.r = unite(sum_.r, e.r);
+    sum_.dr = unite(sum_.dr, e.dr);
+    if (is_narrow || (is_bounded_here && !is_small_jump))
+      sum_.d2r = unite(sum_.d2r, e.d2r);
+    else
+      sum_.jump += is_small_jump || high - low <= narrowest ? width(e.dr) : infinity;
+  }
+
+  const Surface& surface_;
+  std::size_t branch_;
+  Smooth sum_;
+  int budget_ = 0;
+};
+
+struct Quotients {
+  Interval across, twist, factor;
+};
+
+/// B, C and K at one angle off the axis.
+Quotients quotients_at(const Surface& surface, std::size_t branch, double theta) {
+  const RadialEnclosure e = surface.enclose(branch, theta, theta);
+  const Interval angle(theta), s = sin(angle), c = cos(angle), s2 = power(s, 2);
+  return {(e.dr * s * c - e.r) / s2, (e.dr * s - e.r * c) / s2, e.r / s};
+}
+
+Interval fraction(const Interval& part, const Interval& from, const Interval& to) {
+  return part * from + (Interval(1) - part) * to;
+}
+
+Quotients before_right_angle(const Smooth& cell, const Quotients& start, double low, double high) {
+  const double step = high - low, sine = std::sin(low) / std::sin(high);
+  const double least = low > 0 ? sine * sine * (1 - 1e-14) : 0;
+  const Interval jump(-cell.jump, cell.jump), c = cos(Interval(low, high)), c0 = cos(Interval(low));
+  const auto over_share = [&](const Interval& from, const Interval& to) {
+    const Interval nearest = fraction(Interval(least), from, to);
+    return low > 0 ? unite(from, nearest) : nearest;
+  };
+  Quotients q;
+  q.across = over_share(start.across, Interval(0.5) * cell.d2r) - Interval(2) * cell.dr * Interval(0, step);
+  q.twist = over_share(start.twist, (cell.d2r + cell.r) / (c + c0));
+  if (cell.jump > 0) { // R' rises by that much at once somewhere: sin cos / sin^2 and sin / sin^2 of it
+    const Interval s = sin(Interval(low, high));
+    q.across = q.across + jump / s;
+    q.twist = q.twist + jump / s;
+  }
+  q.factor = start.factor + q.twist * Interval(0, step);
+  return q;
+}
+
+/// The same beyond it, where cos^2(theta / 2) / sin^2(theta) = 1 / (4 sin^2(theta / 2)) takes the pole away.
+Quotients beyond_right_angle(const Smooth& cell, const Quotients& start, double low, double high) {
+  const Interval angle(low, high), step(0, high - low), s = sin(angle), s02 = power(sin(Interval(low)), 2);
+  const Interval jump(-cell.jump, cell.jump), half = sin(Interval(0.5 * low, 0.5 * high)), bottom = Interval(4) * power(half, 2);
+  Quotients q;
+  q.across = (start.across * s02 + step * (cell.d2r * s * cos(angle) - Interval(2) * cell.dr * power(s, 2)) + jump * s) / bottom;
+  q.twist = (start.twist * s02 + step * ((cell.d2r + cell.r) * s) + jump * s) / bottom;
+  q.factor = cell.r / (Interval(2) * half);
+  return q;
+}
+
+Quotients scaled(const Quotients& q, double low, double high) {
+  const Interval half = cos(Interval(0.5 * low, 0.5 * high)), half2 = power(half, 2);
+  return {q.across * half2, q.twist * half2, q.factor * half};
+}
+
+struct Weights {
+  Interval g, slope;
+  double jump = 0;
+};
+
+/// g = b^(-1/4), b = (q^2 + e^2) / (1 + q^2 e^2), q = |R'| / mean: falls as q grows (transform/weight.h).
+Weights weights_of(const Smooth& cell, double mean) {
+  const Interval size = abs(cell.dr);
+  constexpr double rounding = 1e-13;
+  Weights w;
+  w.g = {weight(size.hi, mean) * (1 - rounding), weight(size.lo, mean) * (1 + rounding)};
+  w.slope = Interval(0);
+  if (std::isinf(mean)) return w;
+  constexpr double e2 = BranchMap::weight_epsilon * BranchMap::weight_epsilon;
+  const Interval q = cell.dr / Interval(mean), q2 = power(q, 2), bottom = Interval(1) + Interval(e2) * q2;
+  const Interval b = (q2 + Interval(e2)) / bottom;
+  const Interval rate = Interval(-0.5 * (1 - e2 * e2) / mean) * w.g / b * q / power(bottom, 2); // dg/dR'
+  w.slope = rate * cell.d2r;
+  w.jump = magnitude(rate) * cell.jump;
+  return w;
+}
+
+float rounded_up(double value) {
+  const float f = static_cast<float>(value);
+  return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+} // namespace
+
+RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high) {
+  u_low_ = theta_low == 0 ? 0 : index_of(theta_low);
+  const double u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
+  scale_ = cells / (u_high - u_low_);
+  const double mean = mean_slope(surface, branch);
+  slope_jumps_.assign(cells + 1, 0);
+  weight_jumps_.assign(cells + 1, 0);
+  std::vector<Row> base(cells);
+  parallel_each(cells, 8, [&](std::size_t i) {
+    constexpr double rounding = 1e-13;
+    const double first = i == 0 ? theta_low : angle_at(u_low_ + static_cast<double>(i) / scale_) - rounding;
+    const double last = i + 1 == cells ? theta_high : angle_at(u_low_ + static_cast<double>(i + 1) / scale_) + rounding;
+    const Smooth cell = CellEncloser(surface, branch).enclose(first, last);
+    Quotients start;
+    if (first > 0)
+      start = quotients_at(surface, branch, first);
+    else
+      start.factor = surface.enclose(branch, 0, 0).dr;
+    const Quotients q = last <= right_angle ? scaled(before_right_angle(cell, start, first, last), first, last)
+                                            : beyond_right_angle(cell, start, first, last);
+    const Weights w = weights_of(cell, mean);
+    const std::array<Interval, quantities> all{cell.d2r, q.across, q.twist, cell.dr, q.factor, w.g, w.slope};
+    for (int k = 0; k < quantities; ++k) {
+      base[i][2 * k] = rounded_up(-all[k].lo);
+      base[i][2 * k + 1] = rounded_up(all[k].hi);
+    }
+    slope_jumps_[i + 1] = cell.jump;
+    weight_jumps_[i + 1] = w.jump;
+  });
+  for (int i = 0; i < cells; ++i) {
+    slope_jumps_[i + 1] += slope_jumps_[i];
+    weight_jumps_[i + 1] += weight_jumps_[i];
+  }
+  levels_.push_back(std::move(base));
+  for (std::size_t span = 2; span <= cells; span *= 2) {
+    const std::vector<Row>& finer = levels_.back();
+    std::vector<Row> level(cells - span + 1);
+    for (std::size_t i = 0; i < level.size(); ++i)
+      for (std::size_t k = 0; k < level[i].size(); ++k) level[i][k] = std::max(finer[i][k], finer[i + span / 2][k]);
+    levels_.push_back(std::move(level));
+  }
+}
+
+RadialRange RadialRanges::over(double u_low, double u_high) const {
+  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp((u - u_low_) * scale_, 0.0, cells - 1.0)); };
+  const std::size_t first = cell(u_low), last = cell(u_high);
+  const std::size_t level = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
+  const Row& left = levels_[level][first];
+  const Row& right = levels_[level][last + 1 - (std::size_t{1} << level)];
+  const auto range = [&](std::size_t k) -> Range {
+    return {-static_cast<double>(std::max(left[2 * k], right[2 * k])), static_cast<double>(std::max(left[2 * k + 1], right[2 * k + 1]))};
+  };
+  const auto jump = [&](const std::vector<double>& sums) { return sums[last + 1] - sums[first]; };
+  // cos^2(theta / 2) falls with u.
+  const auto half2 = [](double u) { return (1 - u) * (1 - u) / ((1 - u) * (1 - u) + u * u); };
+  const Range square{1 / half2(u_low), 1 / half2(u_high)}, root{std::sqrt(square.low), std::sqrt(square.high)};
+  const auto scaled = [](const Range& a, const Range& by) -> Range {
+    return {a.low * (a.low < 0 ? by.high : by.low), a.high * (a.high > 0 ? by.high : by.low)};
+  };
+  return {range(0), scaled(range(1), square), scaled(range(2), square), range(3), scaled(range(4), root), range(5), range(6), jump(slope_jumps_), jump(weight_jumps_)};
+}
+
+} // namespace domewarp

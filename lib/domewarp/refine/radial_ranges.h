@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "domewarp/profile/surface.h"
+
+namespace domewarp {
+
+struct Range {
+  double low = 0, high = 0;
+};
+
+/// What the derivatives of the image G = R(theta) e_r and of the weight g(theta) are made of, over a range of angles.
+struct RadialRange {
+  Range along;        ///< A = R''
+  Range across;       ///< B = (R' sin cos - R) / sin^2
+  Range twist;        ///< C = (R' sin - R cos) / sin^2 = K'
+  Range slope;        ///< R'
+  Range factor;       ///< K = R / sin
+  Range weight;       ///< g
+  Range weight_slope; ///< g'
+  double slope_jump = 0;  ///< by how much R' changes beyond what `along` accounts for (kinks), sum over the range
+  double weight_jump = 0; ///< the same of g
+};
+
+/// Ranges over one branch, from interval enclosures of R, R', R'': certain, not sampled. Cells are equal in the
+/// half-angle index u (transform/radial_table.h), so that a look-up needs no trigonometry; any range costs two of them.
+class RadialRanges {
+public:
+  RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high);
+
+  /// @param u_low,u_high half-angle indices, in order; clamped to the branch
+  RadialRange over(double u_low, double u_high) const;
+
+private:
+  static constexpr int cells = 1024;
+  static constexpr int quantities = 7;
+  /// Bounds rounded outwards; -low, so that both halves are maxima. B, C and K grow without bound towards the backward
+  /// axis: they are kept times cos^2(theta / 2), cos^2(theta / 2) and cos(theta / 2).
+  using Row = std::array<float, 2 * quantities>;
+
+  double u_low_ = 0, scale_ = 0;
+  std::vector<std::vector<Row>> levels_; ///< sparse table: levels_[k][i] covers cells i .. i + 2^k - 1
+  std::vector<double> slope_jumps_, weight_jumps_; ///< running sums, cells + 1
+};
+
+} // namespace domewarp
