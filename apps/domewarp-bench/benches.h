@@ -23,6 +23,7 @@ struct Result {
 };
 
 /// One function per subcommand, each in the file of its name.
+Result run_convert_bench(const Options& options);
 Result run_map_bench(const Options& options);
 
 struct Bench {
@@ -33,6 +34,7 @@ struct Bench {
 
 /// The subcommands. A new bench is a declaration above, a line here and its file in CMakeLists.txt.
 inline constexpr Bench benches[] = {
+    {"convert", "Whole conversions of 10^3 to 10^7 triangles: time and memory against reading and writing alone.", run_convert_bench},
     {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
 };
 

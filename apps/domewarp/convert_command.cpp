@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
@@ -10,6 +11,7 @@
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 #include "domewarp/core/parallel.h"
+#include "frames.h"
 #include "options.h"
 #include "progress_bar.h"
 
@@ -20,32 +22,57 @@ namespace {
 struct Arguments {
   std::string input, output, report;
   JobOptions job;
+  std::optional<FrameRange> frames;
+  double fps = 30;
   bool json = false, quiet = false;
   int threads = 0;
 };
 
-void print(const Arguments& arguments, const ConvertReport& report, const std::string& json) {
-  if (!arguments.quiet)
-    for (const std::string& warning : report.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
-  if (arguments.json)
-    std::cout << json;
-  else if (!arguments.quiet)
-    std::cout << arguments.input << " -> " << arguments.output << "\n" << to_text(report, arguments.job.convert);
+void print(const Arguments& arguments, const std::string& output, const ConvertReport& report) {
+  if (arguments.quiet) return;
+  for (const std::string& warning : report.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
+  if (!arguments.json) std::cout << arguments.input << " -> " << output << "\n" << to_text(report, arguments.job.convert);
+}
+
+/// One file. @return whether the promise was kept
+bool convert_one(const Arguments& arguments, const JobOptions& job, const std::string& output, DisplayCache& displays,
+                 std::string& json) {
+  ProgressBar bar(arguments.quiet);
+  const ConvertReport report = run_job(arguments.input, output, job, &displays, bar.watch());
+  bar.clear();
+  json = to_json(report, job.convert);
+  print(arguments, output, report);
+  if (is_kept(report, job.convert)) return true;
+  std::cerr << "domewarp: " << output << ": " << broken_promise(report, job.convert) << "\n";
+  return false;
+}
+
+/// Every frame, in order. The reports become a list.
+bool convert_frames(const Arguments& arguments, DisplayCache& displays, std::string& json) {
+  JobOptions job = arguments.job;
+  if (job.read.animation.empty()) throw Error(ErrorCode::usage, "--frames: needs --animation");
+  hold_view(arguments.input, job);
+  bool kept = true;
+  for (std::size_t frame = arguments.frames->first; frame <= arguments.frames->last; ++frame) {
+    job.read.time = static_cast<double>(frame) / arguments.fps;
+    std::string report;
+    kept = convert_one(arguments, job, frame_path(arguments.output, frame), displays, report) && kept;
+    json += (json.empty() ? "[\n" : ",\n") + report;
+  }
+  json += "]\n";
+  return kept;
 }
 
 int run(const Arguments& arguments) {
-  const ConvertOptions& options = arguments.job.convert;
-  require_surface(options.surface);
+  require_surface(arguments.job.convert.surface);
   const ThreadLimit threads(arguments.threads);
-  ProgressBar bar(arguments.quiet);
-  const ConvertReport report = run_job(arguments.input, arguments.output, arguments.job, nullptr, bar.watch());
-  bar.clear();
-  const std::string json = to_json(report, options);
+  DisplayCache displays;
+  std::string json;
+  const bool kept = arguments.frames ? convert_frames(arguments, displays, json)
+                                     : convert_one(arguments, arguments.job, arguments.output, displays, json);
   if (!arguments.report.empty()) write_file(arguments.report, json);
-  print(arguments, report, json);
-  if (is_kept(report, options)) return 0;
-  std::cerr << "domewarp: " << arguments.output << ": " << broken_promise(report, options) << "\n";
-  return static_cast<int>(ErrorCode::unkept);
+  if (arguments.json) std::cout << json;
+  return kept ? 0 : static_cast<int>(ErrorCode::unkept);
 }
 
 } // namespace
@@ -56,6 +83,10 @@ void add_convert_command(CLI::App& app, int& status) {
   command->add_option("IN", arguments->input, "The scene (.glb or .gltf)")->required();
   command->add_option("-o,--output", arguments->output, "The warped scene to write (.glb or .gltf)")->required();
   add_job_options(*command, arguments->job);
+  command->add_option_function<std::string>("--frames", [arguments](const std::string& text) {
+           parse_frames("--frames", text, arguments->frames.emplace());
+         }, "Write frames FIRST to LAST of the animation, as OUT.0000.glb and so on")->type_name("FIRST:LAST");
+  command->add_option("--fps", arguments->fps, "Frames per second of --frames (default 30)")->check(CLI::PositiveNumber);
   command->add_option("--report", arguments->report, "Write the report as JSON")->type_name("FILE.json");
   command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the report as JSON");

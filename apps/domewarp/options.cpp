@@ -85,6 +85,12 @@ CLI::Option* add_choice(CLI::App& app, const char* name, const std::string& help
 
 void add_read_options(CLI::App& app, ReadOptions& read) {
   app.add_option("--scene", read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
+  add(app, "--animation", "Animation to pose the scene with (default: the rest pose)", "NAME|INDEX", [&read](const std::string& text) {
+    if (text.empty()) throw Error(ErrorCode::usage, "--animation: is empty");
+    read.animation = text;
+  });
+  add(app, "--time", "Time of the animation, seconds (default 0)", "T",
+      [&read](const std::string& text) { read.time = parse_number("--time", text); });
   app.add_flag("--allow-external", read.allow_external, "Follow URIs that leave the scene's folder");
 }
 

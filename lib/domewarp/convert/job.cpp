@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/convert/job.h"
 
+#include "domewarp/gltf/geometric_extensions.h"
+#include "domewarp/gltf/vertex_order.h"
+
 namespace domewarp {
 
 ConvertReport run_job(const std::filesystem::path& input, const std::filesystem::path& output, const JobOptions& options,
@@ -16,7 +19,11 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
   } else {
     warped = convert(scene, options.convert, report, progress);
   }
+  const bool lights_dropped = !scene.lights.empty() && warped.lights.empty();
   scene = {};
+  for (const std::string& name : drop_geometric_extensions(warped)) report.dropped_extensions.push_back(name);
+  if (lights_dropped) report.dropped_extensions.push_back("KHR_lights_punctual");
+  optimize_vertex_order(warped);
   tell(progress, "write");
   write_scene(warped, output, options.write);
   return report;

@@ -79,10 +79,14 @@ private:
 
 } // namespace
 
-void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+void write_file(const fs::path& path, std::initializer_list<std::span<const std::uint8_t>> parts) {
   TemporaryFile file(path);
-  file.write(bytes);
+  for (const std::span<const std::uint8_t> part : parts) file.write(part);
   file.commit();
+}
+
+void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  write_file(path, std::initializer_list<std::span<const std::uint8_t>>{bytes});
 }
 
 void write_file(const fs::path& path, std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 /// @throws Error(output) naming the file; the temporary file is removed.
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
+
+/// The same for parts that follow each other.
+void write_file(const std::filesystem::path& path, std::initializer_list<std::span<const std::uint8_t>> parts);
 
 /// Makes a folder and those above it where they are missing. @throws Error(output)
 void make_folder(const std::filesystem::path& path);

@@ -48,34 +48,34 @@ double load(const std::uint8_t* data) {
   return static_cast<double>(value);
 }
 
-double load_component(const std::uint8_t* data, int type) {
-  switch (type) {
-  case int8_type:
-    return load<std::int8_t>(data);
-  case uint8_type:
-    return load<std::uint8_t>(data);
-  case int16_type:
-    return load<std::int16_t>(data);
-  case uint16_type:
-    return load<std::uint16_t>(data);
-  case uint32_type:
-    return load<std::uint32_t>(data);
-  default:
-    return load<float>(data);
-  }
-}
 
-/// Calls store(element, component, raw value) for `count` elements.
-template <typename Store>
-void each_component(const Accessor& accessor, const Elements& elements, std::size_t count, std::size_t size,
-                    Store&& store) {
-  const std::size_t column = column_stride(accessor, size);
+template <typename T, typename Store>
+void each_component_as(const Accessor& accessor, const Elements& elements, std::size_t count, Store&& store) {
+  const std::size_t column = column_stride(accessor, sizeof(T));
   const auto rows = static_cast<std::size_t>(accessor.rows), columns = static_cast<std::size_t>(accessor.columns);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t c = 0; c < columns; ++c)
       for (std::size_t r = 0; r < rows; ++r)
-        store(i, c * rows + r,
-              load_component(elements.data + i * elements.stride + c * column + r * size, accessor.component_type));
+        store(i, c * rows + r, load<T>(elements.data + i * elements.stride + c * column + r * sizeof(T)));
+}
+
+/// Calls store(element, component, raw value) for `count` elements.
+template <typename Store>
+void each_component(const Accessor& accessor, const Elements& elements, std::size_t count, Store&& store) {
+  switch (accessor.component_type) {
+  case int8_type:
+    return each_component_as<std::int8_t>(accessor, elements, count, store);
+  case uint8_type:
+    return each_component_as<std::uint8_t>(accessor, elements, count, store);
+  case int16_type:
+    return each_component_as<std::int16_t>(accessor, elements, count, store);
+  case uint16_type:
+    return each_component_as<std::uint16_t>(accessor, elements, count, store);
+  case uint32_type:
+    return each_component_as<std::uint32_t>(accessor, elements, count, store);
+  default:
+    return each_component_as<float>(accessor, elements, count, store);
+  }
 }
 
 std::vector<std::size_t> sparse_targets(const Document& document, const Accessor& accessor, const std::string& place,
@@ -90,12 +90,13 @@ std::vector<std::size_t> sparse_targets(const Document& document, const Accessor
       find_elements(document, sparse.index_view, sparse.index_offset, sparse.count, size, false, place);
   budget.charge(sparse.count, sizeof(std::size_t), place);
   std::vector<std::size_t> targets(sparse.count);
-  for (std::size_t i = 0; i < sparse.count; ++i) {
-    targets[i] = static_cast<std::size_t>(load_component(elements.data + i * size, sparse.index_type));
-    if (targets[i] >= accessor.count)
-      refuse(place,
-             "has the index " + std::to_string(targets[i]) + " of " + std::to_string(accessor.count) + " elements");
-  }
+  Accessor indices;
+  indices.component_type = sparse.index_type;
+  each_component(indices, elements, sparse.count,
+                 [&](std::size_t i, std::size_t, double value) { targets[i] = static_cast<std::size_t>(value); });
+  for (const std::size_t target : targets)
+    if (target >= accessor.count)
+      refuse(place, "has the index " + std::to_string(target) + " of " + std::to_string(accessor.count) + " elements");
   return targets;
 }
 
@@ -112,13 +113,13 @@ void each_value(const Document& document, const Accessor& accessor, const std::s
   if (accessor.view >= 0 && accessor.count > 0)
     each_component(accessor,
                    find_elements(document, accessor.view, accessor.offset, accessor.count, element, true, place),
-                   accessor.count, size, store);
+                   accessor.count, store);
   if (!is_sparse(accessor)) return;
   const std::string here = place + ".sparse";
   const std::vector<std::size_t> targets = sparse_targets(document, accessor, here, budget);
   const Elements values = find_elements(document, accessor.sparse.value_view, accessor.sparse.value_offset,
                                         targets.size(), element, false, here);
-  each_component(accessor, values, targets.size(), size,
+  each_component(accessor, values, targets.size(),
                  [&](std::size_t i, std::size_t c, double value) { store(targets[i], c, value); });
 }
 

@@ -41,7 +41,8 @@ std::string shape_defect(const Document& document, const AnimationChannel& chann
 
 bool has_unit_rotations(const Document& document, const AnimationChannel& channel, Budget& budget) {
   const std::vector<float> values = read_floats(document, channel.output, budget);
-  const std::size_t step = channel.cubic ? 12 : 4, first = channel.cubic ? 4 : 0;
+  const bool cubic = channel.interpolation == Interpolation::cubic;
+  const std::size_t step = cubic ? 12 : 4, first = cubic ? 4 : 0;
   for (std::size_t i = first; i + 4 <= values.size(); i += step) {
     const double length = std::hypot(std::hypot(values[i], values[i + 1]), std::hypot(values[i + 2], values[i + 3]));
     if (!(std::abs(length - 1) < 0.005)) return false;

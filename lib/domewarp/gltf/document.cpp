@@ -120,7 +120,7 @@ Document read_document(const std::filesystem::path& path, const ReadOptions& opt
   finish_images(root, document, budget);
   read_materials(root, document.scene);
   read_asset(root.at("asset"), document.scene);
-  document.animation_channels = read_animation_channels(root);
+  read_animations(root, document);
   return document;
 }
 

@@ -86,6 +86,8 @@ struct MeshSource {
 struct NodeSource {
   std::string name;
   Mat4 local = Mat4(1);
+  bool has_matrix = false;                          ///< `local` is given as such; the three below are not
+  std::vector<double> translation, rotation, scale; ///< empty where the file does not say
   int camera = -1, mesh = -1, skin = -1, light = -1;
   bool visible = true;
   std::vector<int> children;
@@ -103,11 +105,13 @@ struct SceneSource {
   std::vector<int> nodes;
 };
 
+enum class Interpolation { linear, step, cubic };
+
 struct AnimationChannel {
   std::size_t animation = 0;
   int node = -1, input = -1, output = -1;
   std::string path;
-  bool cubic = false; ///< every value stands between two tangents
+  Interpolation interpolation = Interpolation::linear; ///< cubic: every value stands between two tangents
 };
 
 struct Document {
@@ -118,6 +122,7 @@ struct Document {
   std::vector<NodeSource> nodes;
   std::vector<SkinSource> skins;
   std::vector<SceneSource> scenes;
+  std::vector<std::string> animations; ///< their names
   std::vector<AnimationChannel> animation_channels;
   int default_scene = -1;
   bool quantization_required = false; ///< KHR_mesh_quantization is among the required extensions

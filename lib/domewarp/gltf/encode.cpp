@@ -74,6 +74,7 @@ class SceneWriter {
   }
 
   EncodedScene write() {
+    if (packing_ == Packing::plain) layout_.bytes.reserve(plain_size());
     for (const Instance& instance : scene_.instances) add_instance(instance);
     for (const Camera& camera : scene_.cameras) add_camera(camera);
     for (const Light& light : scene_.lights) add_light(light);
@@ -91,6 +92,17 @@ class SceneWriter {
   }
 
  private:
+  /// About what the buffer will hold, an instance's mesh counted once.
+  std::size_t plain_size() const {
+    std::size_t size = 0;
+    for (const Mesh& mesh : scene_.meshes)
+      for (const Primitive& primitive : mesh.primitives) {
+        size += primitive.positions.size() * sizeof(Vec3f) + primitive.indices.size() * sizeof(std::uint32_t);
+        for (const Attribute& attribute : primitive.attributes) size += attribute.values.size() * sizeof(float);
+      }
+    return size;
+  }
+
   json asset() const {
     json asset = {{"version", "2.0"}, {"generator", "domewarp " DOMEWARP_VERSION}};
     if (!scene_.copyright.empty()) asset["copyright"] = scene_.copyright;

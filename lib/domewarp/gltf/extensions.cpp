@@ -193,22 +193,30 @@ std::vector<Light> read_lights(const json& root, std::vector<std::string>& warni
   return lights;
 }
 
-std::vector<AnimationChannel> read_animation_channels(const json& root) {
-  std::vector<AnimationChannel> channels;
-  if (!root.contains("animations")) return channels;
+namespace {
+
+Interpolation interpolation_of(const json& sampler) {
+  const std::string name = sampler.value("interpolation", "LINEAR");
+  return name == "CUBICSPLINE" ? Interpolation::cubic : name == "STEP" ? Interpolation::step : Interpolation::linear;
+}
+
+} // namespace
+
+void read_animations(const json& root, Document& document) {
+  if (!root.contains("animations")) return;
   std::size_t index = 0;
   for (const json& animation : root.at("animations")) {
+    document.animations.push_back(animation.value("name", ""));
     if (animation.contains("channels"))
       for (const json& channel : animation.at("channels")) {
         const json& target = channel.at("target");
         const json& sampler = animation.at("samplers")[channel.at("sampler").get<std::size_t>()];
-        channels.push_back({index, target.value("node", -1), sampler.at("input").get<int>(),
+        document.animation_channels.push_back({index, target.value("node", -1), sampler.at("input").get<int>(),
                             sampler.at("output").get<int>(), target.at("path"),
-                            sampler.value("interpolation", "LINEAR") == "CUBICSPLINE"});
+                            interpolation_of(sampler)});
       }
     ++index;
   }
-  return channels;
 }
 
 } // namespace domewarp::gltf

@@ -22,7 +22,7 @@ void read_extensions(const nlohmann::json& root, Document& document);
 /// KHR_lights_punctual, in the file's order.
 std::vector<Light> read_lights(const nlohmann::json& root, std::vector<std::string>& warnings);
 
-/// What the channels of all animations move, for checks only.
-std::vector<AnimationChannel> read_animation_channels(const nlohmann::json& root);
+/// Names and channels of the animations.
+void read_animations(const nlohmann::json& root, Document& document);
 
 } // namespace domewarp::gltf

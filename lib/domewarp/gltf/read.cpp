@@ -2,7 +2,6 @@
 #include "domewarp/gltf/read.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <exception>
 #include <map>
@@ -13,13 +12,16 @@
 
 #include "domewarp/core/errors.h"
 #include "domewarp/gltf/accessors.h"
+#include "domewarp/gltf/animate.h"
 #include "domewarp/gltf/animations.h"
 #include "domewarp/gltf/document.h"
+#include "domewarp/gltf/find_by_name.h"
 #include "domewarp/gltf/materials.h"
 #include "domewarp/gltf/nodes.h"
 #include "domewarp/gltf/pose.h"
 #include "domewarp/gltf/primitives.h"
 #include "domewarp/gltf/topology.h"
+#include "domewarp/gltf/vertex_views.h"
 
 namespace domewarp {
 
@@ -47,18 +49,21 @@ bool is_usable(const Camera& camera) {
 
 class SceneReader {
  public:
-  SceneReader(Document document, Budget& budget)
+  SceneReader(Document document, const ReadOptions& options, Budget& budget)
       : document_(std::move(document)), scene_(std::move(document_.scene)), cameras_(std::move(scene_.cameras)),
         lights_(std::move(scene_.lights)), budget_(budget) {
     scene_.cameras.clear();
     scene_.lights.clear();
+    check_accessors(document_, budget_, scene_.warnings);
+    check_vertex_views(document_, scene_.warnings);
+    check_animations(document_, budget_, scene_.warnings);
+    if (!options.animation.empty())
+      apply_animation(options.animation, options.time, document_, budget_, scene_.warnings);
     parents_ = find_parents(document_.nodes);
     world_ = world_matrices(document_.nodes, parents_);
   }
 
   Scene read(const std::string& name) {
-    check_accessors(document_, budget_, scene_.warnings);
-    check_animations(document_, budget_, scene_.warnings);
     for (std::size_t i = 0; i < cameras_.size(); ++i)
       if (!is_usable(cameras_[i]))
         scene_.warnings.push_back(at("cameras", i) + ": has factors that make no picture and is left out");
@@ -70,14 +75,9 @@ class SceneReader {
 
  private:
   int find_scene(const std::string& name) const {
-    for (std::size_t i = 0; i < document_.scenes.size(); ++i)
-      if (document_.scenes[i].name == name) return static_cast<int>(i);
-    std::size_t index = 0;
-    const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), index);
-    if (status == std::errc() && end == name.data() + name.size() && index < document_.scenes.size())
-      return static_cast<int>(index);
-    throw Error(ErrorCode::usage, "--scene " + name + ": the file has " + std::to_string(document_.scenes.size()) +
-                                      " scene(s) and none of that name or index");
+    std::vector<std::string> names;
+    for (const SceneSource& scene : document_.scenes) names.push_back(scene.name);
+    return static_cast<int>(find_by_name(name, names, "--scene", "scene"));
   }
 
   /// The nodes to start from: those of the scene asked for, of the default or first scene, or all without parent.
@@ -288,8 +288,9 @@ void shorten(std::vector<std::string>& warnings) {
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
   try {
+    if (options.animation.empty() && options.time != 0) throw Error(ErrorCode::usage, "--time: needs --animation");
     gltf::Budget budget(options.max_bytes);
-    Scene scene = gltf::SceneReader(gltf::read_document(path, options, budget), budget).read(options.scene);
+    Scene scene = gltf::SceneReader(gltf::read_document(path, options, budget), options, budget).read(options.scene);
     gltf::shorten(scene.warnings);
     return scene;
   } catch (const Error& error) {

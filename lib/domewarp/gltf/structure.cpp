@@ -220,6 +220,7 @@ constexpr Rule light_rules[] = {
     {"name", Kind::text},        {"type", Kind::text, true}, {"color", Kind::numbers, false, "", 3},
     {"intensity", Kind::number}, {"range", Kind::number},    {"spot", Kind::object}};
 constexpr Rule spot_rules[] = {{"innerConeAngle", Kind::number}, {"outerConeAngle", Kind::number}};
+constexpr Rule animation_rules[] = {{"name", Kind::text}};
 constexpr Rule animation_sampler_rules[] = {{"input", Kind::index, true, "accessors"},
                                             {"output", Kind::index, true, "accessors"},
                                             {"interpolation", Kind::text}};
@@ -359,7 +360,7 @@ void check_nodes(Checker& checker, const json& root) {
 
 void check_animations(Checker& checker, const json& root) {
   checker.each(root, nullptr, "animations", [&](const json& animation, const Place& place) {
-    if (!animation.is_object()) refuse(place.text(), "must be an object, not " + shown(animation));
+    checker.check(animation, place, animation_rules);
     std::size_t samplers = 0;
     checker.each(animation, &place, "samplers", [&](const json& sampler, const Place& here) {
       checker.check(sampler, here, animation_sampler_rules);

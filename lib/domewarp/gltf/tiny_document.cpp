@@ -103,6 +103,10 @@ NodeSource convert(const tiny::Node& source) {
   node.name = source.name;
   node.local = source.matrix.size() == 16 ? matrix_of(source.matrix)
                                           : matrix_of(source.translation, source.rotation, source.scale);
+  node.has_matrix = source.matrix.size() == 16;
+  node.translation = source.translation;
+  node.rotation = source.rotation;
+  node.scale = source.scale;
   node.camera = source.camera;
   node.mesh = source.mesh;
   node.skin = source.skin;

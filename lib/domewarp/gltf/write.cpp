@@ -24,28 +24,30 @@ void append_word(std::vector<std::uint8_t>& bytes, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-template <typename Bytes>
-void append_chunk(std::vector<std::uint8_t>& file, std::size_t type, const Bytes& data, std::uint8_t padding) {
-  append_word(file, (data.size() + 3) / 4 * 4);
-  append_word(file, type);
-  file.insert(file.end(), data.begin(), data.end());
-  file.resize((file.size() + 3) / 4 * 4, padding);
-}
+/// A GLB in two parts, so that the large one is not copied.
+struct Glb {
+  std::vector<std::uint8_t> head;   ///< up to the data of the BIN chunk
+  std::vector<std::uint8_t> binary; ///< these data, padded; empty: no such chunk
+};
 
-std::vector<std::uint8_t> pack_glb(const EncodedScene& encoded) {
-  const std::size_t json = (encoded.json.size() + 3) / 4 * 4, binary = (encoded.binary.size() + 3) / 4 * 4;
-  const std::size_t length = 20 + json + (binary ? 8 + binary : 0);
+Glb pack_glb(EncodedScene encoded) {
+  Glb glb;
+  glb.binary = std::move(encoded.binary);
+  glb.binary.resize((glb.binary.size() + 3) / 4 * 4, 0);
+  encoded.json.resize((encoded.json.size() + 3) / 4 * 4, ' ');
+  const std::size_t length = 20 + encoded.json.size() + (glb.binary.empty() ? 0 : 8 + glb.binary.size());
   if (length > UINT32_MAX)
     throw Error(ErrorCode::output, "the scene needs " + std::to_string(length) + " bytes, a GLB can hold 4 GiB");
-  std::vector<std::uint8_t> file;
-  file.reserve(length);
-  append_word(file, 0x46546C67);
-  append_word(file, 2);
-  append_word(file, length);
-  append_chunk(file, 0x4E4F534A, encoded.json, ' ');
-  if (binary) append_chunk(file, 0x004E4942, encoded.binary, 0);
-  return file;
+  for (const std::size_t word : {std::size_t(0x46546C67), std::size_t(2), length, encoded.json.size(), std::size_t(0x4E4F534A)})
+    append_word(glb.head, word);
+  glb.head.insert(glb.head.end(), encoded.json.begin(), encoded.json.end());
+  if (glb.binary.empty()) return glb;
+  append_word(glb.head, glb.binary.size());
+  append_word(glb.head, 0x004E4942);
+  return glb;
 }
+
+Glb encode(const Scene& scene, const WriteOptions& options) { return pack_glb(encode_scene(scene, options, {})); }
 
 bool is_hidden(const fs::path& path) {
   return std::any_of(path.begin(), path.end(), [](const fs::path& part) { return part.string().starts_with("."); });
@@ -109,7 +111,9 @@ void write_separate(const Scene& scene, const fs::path& path, const WriteOptions
 } // namespace gltf
 
 std::vector<std::uint8_t> encode_glb(const Scene& scene, const WriteOptions& options) {
-  return gltf::pack_glb(gltf::encode_scene(scene, options, {}));
+  gltf::Glb glb = gltf::encode(scene, options);
+  glb.head.insert(glb.head.end(), glb.binary.begin(), glb.binary.end());
+  return std::move(glb.head);
 }
 
 void write_scene(const Scene& scene, const fs::path& path, const WriteOptions& options) {
@@ -117,10 +121,9 @@ void write_scene(const Scene& scene, const fs::path& path, const WriteOptions& o
   if (extension != ".glb" && extension != ".gltf")
     throw Error(ErrorCode::usage, path.string() + ": the name must end in .glb or .gltf");
   try {
-    if (extension == ".gltf")
-      gltf::write_separate(scene, path, options);
-    else
-      write_file(path, encode_glb(scene, options));
+    if (extension == ".gltf") return gltf::write_separate(scene, path, options);
+    const gltf::Glb glb = gltf::encode(scene, options);
+    write_file(path, {glb.head, glb.binary});
   } catch (const Error& error) {
     const std::string message = error.what();
     if (error.code() != ErrorCode::output || message.starts_with(path.string())) throw;
