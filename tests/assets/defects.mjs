@@ -39,7 +39,7 @@ const patterns = {
   MESH_INVALID_WEIGHTS_COUNT: /has \d+ morph targets for \d+ weights/,
   MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT: /another number of morph targets/,
   MESH_PRIMITIVE_ACCESSOR_UNALIGNED: /elements are not aligned to 4 bytes/,
-  MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE: /shares? .* without a byteStride/,
+  MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE: /is shared by .* without a byteStride/,
   MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT: /holds indices of the componentType/,
   MESH_PRIMITIVE_INVALID_ATTRIBUTE: /has the attribute .* which glTF does not know/,
   MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH: /has only one of JOINTS_1 and WEIGHTS_1/,

@@ -47,6 +47,10 @@ refuses 1 --lens convert "$scene" -o out.glb
 refuses 1 --lens convert "$scene" -o out.glb --lens fish
 refuses 1 --colour convert "$scene" -o out.glb --curve '1-r^2' --colour red
 refuses 1 .obj convert "$scene" -o out.obj --curve '1-r^2'
+refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --animation walk
+refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --time 1
+refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 3:1
+refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 0:1
 refuses 4 nowhere convert "$scene" -o nowhere/out.glb --curve '1-r^2' --quiet
 refuses 2 extras compare "$scene" "$scene"
 
