@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "domewarp/profile/surface.h"
+
+namespace domewarp {
+
+/// What the batch kernel keeps in registers: one branch that rises from the axis, with the tangent extension and the
+/// projector folded in, in single precision.
+///
+/// Index: t = u scale - 1/2 with u = n / (n + alpha o) and tan(theta / 2) = n / o, analytic over all directions; piece
+/// round(t), position t - round(t) in [-1/2, 1/2]. Value: x' = x / (rho Q), Q = sin(theta) / R(theta). On the tangent
+/// line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
+struct FloatTable {
+  static constexpr int degree = 5;
+  static constexpr int powers = degree + 1;
+  static constexpr int most_pieces = 32;
+  static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
+
+  int pieces = 16;
+  float alpha = 1, scale = 1;
+  float t_max = 0;      ///< beyond: tangent extension
+  float t_behind = 0;   ///< beyond, Q is 1 / R and divides x / r: sin(theta) / R vanishes on the backward axis
+  float t_blind = 0;    ///< beyond: blind
+  float beyond_z = 0, beyond_r = 0;
+  float g_beyond = 1;
+  alignas(64) float q[powers][most_pieces]{}; ///< coefficients, highest power first
+  alignas(64) float g[powers][most_pieces]{}; ///< of the perspective output's weight
+
+  bool reaches_behind() const { return t_max > t_behind; }
+};
+
+/// A table with what it is expected to be off by.
+struct FloatFit {
+  FloatTable table;
+  double approximation = 0;   ///< error of the polynomials, image units
+  double predicted_error = 0; ///< with the rounding of single precision: 1.2e-7 max |u dR/du| + 3e-7 r_max
+  double weight_error = 0;    ///< relative, of g
+};
+
+/// The smallest table whose predicted error is at most a fifth of `max_error`, or the best one if that is at most
+/// `max_error`; nothing where there is none, or where the surface is not one branch that rises from the axis.
+std::optional<FloatFit> make_float_table(const Surface& surface, double max_error);
+
+} // namespace domewarp
