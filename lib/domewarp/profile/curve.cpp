@@ -98,6 +98,12 @@ Jet<double> differentiate(const Curve& curve, double r) {
   return is_patched(curve, r) ? evaluate_patch(*curve.centre, r) : differentiate(curve.expression, r);
 }
 
+Jet<Quad> differentiate(const Curve& curve, const Quad& r) {
+  if (curve.measured) return differentiate(*curve.measured, r);
+  return is_patched(curve, static_cast<double>(r)) ? evaluate_patch(*curve.centre, r)
+                                                   : differentiate(curve.expression, r);
+}
+
 Jet<Interval> enclose_jet(const Curve& curve, const Interval& cell) {
   if (curve.measured) return enclose_jet(*curve.measured, cell);
   return is_patched(curve, cell.lo) ? evaluate_patch(*curve.centre, cell) : enclose_jet(curve.expression, cell);

@@ -10,6 +10,7 @@ namespace domewarp {
 namespace {
 
 double constant(const Instruction& instruction, double*) { return instruction.number; }
+Quad constant(const Instruction& instruction, Quad*) { return Quad(instruction.number) + Quad(instruction.rest); }
 Interval constant(const Instruction& instruction, Interval*) {
   return instruction.rounded ? around(instruction.number) : Interval(instruction.number);
 }
@@ -17,6 +18,13 @@ template <typename T>
 Jet<T> constant(const Instruction& instruction, Jet<T>*) {
   return {constant(instruction, static_cast<T*>(nullptr)), T(0), T(0)};
 }
+
+// The exponent of power_number as each kind of number takes it; intervals allow for its rounding themselves.
+template <typename T>
+double exponent(const Instruction& instruction, T*) {
+  return instruction.number;
+}
+Quad exponent(const Instruction& instruction, Jet<Quad>*) { return constant(instruction, static_cast<Quad*>(nullptr)); }
 
 double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? a + b : std::max(a, b); }
 template <typename T>
@@ -79,7 +87,7 @@ T run(const Expression& expression, const T& r, T* stack) {
       break;
     case Operation::variable: *++top = r; break;
     case Operation::power_int: *top = power(*top, static_cast<int>(instruction.number)); break;
-    case Operation::power_number: *top = power(*top, instruction.number); break;
+    case Operation::power_number: *top = power(*top, exponent(instruction, top)); break;
     default:
       if (is_binary(instruction.operation)) {
         --top;
@@ -108,6 +116,8 @@ T run(const Expression& expression, const T& r) {
 double evaluate(const Expression& expression, double r) { return run(expression, r); }
 
 Jet<double> differentiate(const Expression& expression, double r) { return run(expression, Jet<double>{r, 1, 0}); }
+
+Jet<Quad> differentiate(const Expression& expression, const Quad& r) { return run(expression, Jet<Quad>{r, 1, 0}); }
 
 Interval enclose(const Expression& expression, const Interval& r) { return run(expression, r); }
 

@@ -48,6 +48,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
+double rest_of(const Quad& exact, double value) { return static_cast<double>(exact - Quad(value)); }
+
 class Parser {
 public:
   explicit Parser(std::string_view text) : text_(text) {}
@@ -95,14 +97,14 @@ private:
     if (!take(c)) fail(what);
   }
 
-  void emit(Operation operation, double number = 0, bool rounded = false) {
-    code_.push_back({operation, number, rounded});
-  }
+  void emit(Operation operation) { code_.push_back({operation}); }
 
-  void push(Operation operation, double number = 0, bool rounded = false) {
-    emit(operation, number, rounded);
+  void push(const Instruction& operand) {
+    code_.push_back(operand);
     deepest_ = std::max(deepest_, ++height_);
   }
+
+  void push_constant(double value, const Quad& exact) { push({Operation::number, value, rest_of(exact, value), true}); }
 
   void pop_into(Operation operation) {
     emit(operation);
@@ -178,10 +180,11 @@ private:
     constant.stack_size = deepest_;
     const double value = evaluate(constant, 0);
     if (!std::isfinite(value)) fail("expected a finite exponent");
+    const double rest = rest_of(differentiate(constant, Quad(0)).v, value);
     code_.resize(start);
     --height_;
     const bool integer = value == std::nearbyint(value) && std::abs(value) <= 1024;
-    emit(integer ? Operation::power_int : Operation::power_number, value);
+    code_.push_back({integer ? Operation::power_int : Operation::power_number, value, rest});
   }
 
   void operand() {
@@ -201,9 +204,10 @@ private:
     const auto [end, status] = std::from_chars(first, text_.data() + text_.size(), value);
     if (status == std::errc::result_out_of_range) fail("expected a number within the range of a double");
     if (status != std::errc()) fail(std::string(operand_wanted));
-    at_ += static_cast<std::size_t>(end - first);
+    const std::string_view digits = text_.substr(at_, static_cast<std::size_t>(end - first));
+    at_ += digits.size();
     number_end_ = at_;
-    push(Operation::number, value, true);
+    push_constant(value, parse_quad(digits));
   }
 
   // 2.5r^2, 0.2cos(8r), r^2(1+r).
@@ -215,9 +219,9 @@ private:
     const std::size_t start = at_;
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
-    if (word == "r") return push(Operation::variable);
-    if (word == "pi") return push(Operation::number, std::numbers::pi, true);
-    if (word == "e") return push(Operation::number, std::numbers::e, true);
+    if (word == "r") return push({Operation::variable});
+    if (word == "pi") return push_constant(std::numbers::pi, quad_pi());
+    if (word == "e") return push_constant(std::numbers::e, quad_e());
     const auto found = std::find_if(functions.begin(), functions.end(),
                                     [word](const NamedFunction& function) { return function.name == word; });
     if (found != functions.end()) return call(*found);

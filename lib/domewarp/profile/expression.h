@@ -20,6 +20,7 @@ enum class Operation : unsigned char {
 struct Instruction {
   Operation operation{};
   double number = 0;    ///< the constant, or the exponent of power_int and power_number
+  double rest = 0;      ///< what the decimal, pi or e is more than `number`, to 30 digits
   bool rounded = false; ///< the constant stands for a decimal that may not be a double
 };
 
@@ -42,6 +43,7 @@ Expression compile(std::string_view text);
 double evaluate(const Expression& expression, double r);
 /// f, f', f''.
 Jet<double> differentiate(const Expression& expression, double r);
+Jet<Quad> differentiate(const Expression& expression, const Quad& r);
 /// Enclosures of f over the cell.
 Interval enclose(const Expression& expression, const Interval& r);
 /// Enclosures of f, f', f'' over the cell.

@@ -12,17 +12,10 @@ double power(double x, int exponent) {
   }
 }
 
-Jet<double> abs(const Jet<double>& u) { return u.v < 0 ? -u : u; }
-
 Jet<Interval> abs(const Jet<Interval>& u) {
   if (u.v.lo >= 0) return u;
   if (u.v.hi <= 0) return -u;
   return {abs(u.v), hull(u.d, -u.d), entire(Regularity::continuous)};
-}
-
-Jet<double> max(const Jet<double>& a, const Jet<double>& b) {
-  if (std::isnan(a.v) || std::isnan(b.v)) return a + b;
-  return a.v > b.v ? a : b;
 }
 
 Jet<Interval> max(const Jet<Interval>& a, const Jet<Interval>& b) {

@@ -5,10 +5,11 @@
 #include <limits>
 
 #include "domewarp/profile/interval.h"
+#include "domewarp/profile/quad.h"
 
 namespace domewarp {
 
-/// A value with its first and second derivative in r: exact differentiation for T = double, enclosures of all three
+/// A value with its first and second derivative in r: exact differentiation for T = double and Quad, enclosures of all three
 /// for T = Interval (where a function has a kink, of the slopes on either side; the second derivative is then
 /// unbounded).
 template <typename T>
@@ -27,8 +28,10 @@ namespace jet_rules {
 
 /// Zero wins over infinity: a constant stays constant under functions of infinite slope.
 inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+inline Quad times(const Quad& a, const Quad& b) { return a == 0 || b == 0 ? Quad(0) : a * b; }
 inline Interval times(const Interval& a, const Interval& b) { return a * b; }
 inline double square(double a) { return a * a; }
+inline Quad square(const Quad& a) { return a * a; }
 inline Interval square(const Interval& a) { return power(a, 2); }
 
 template <typename T>
@@ -166,9 +169,21 @@ Jet<T> power(const Jet<T>& a, const Jet<T>& b) {
   return jet_rules::chain(exponent, v, v, v);
 }
 
-Jet<double> abs(const Jet<double>& u);
+inline Jet<Quad> power(const Jet<Quad>& u, const Quad& n) {
+  return jet_rules::chain(u, power(u.v, n), n * power(u.v, n - 1), n * (n - 1) * power(u.v, n - 2));
+}
+
+template <typename T>
+Jet<T> abs(const Jet<T>& u) {
+  return u.v < 0 ? -u : u;
+}
 Jet<Interval> abs(const Jet<Interval>& u);
-Jet<double> max(const Jet<double>& a, const Jet<double>& b);
+template <typename T>
+Jet<T> max(const Jet<T>& a, const Jet<T>& b) {
+  using std::isnan;
+  if (isnan(a.v) || isnan(b.v)) return a + b;
+  return a.v > b.v ? a : b;
+}
 Jet<Interval> max(const Jet<Interval>& a, const Jet<Interval>& b);
 template <typename T>
 Jet<T> min(const Jet<T>& a, const Jet<T>& b) {

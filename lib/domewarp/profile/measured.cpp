@@ -142,13 +142,22 @@ MeasuredCurve fit_measured(const std::vector<Vec2>& rows, const std::string& nam
   return curve;
 }
 
-double evaluate(const MeasuredCurve& curve, double r) { return differentiate(curve, r).v; }
+namespace {
 
-Jet<double> differentiate(const MeasuredCurve& curve, double r) {
+template <typename T>
+Jet<T> evaluate_inside(const MeasuredCurve& curve, const T& r) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (!(r >= curve.r.front() && r <= curve.r.back())) return {nan, nan, nan};
-  return evaluate_piece(curve, piece_at(curve, r), r);
+  return evaluate_piece(curve, piece_at(curve, static_cast<double>(r)), r);
 }
+
+} // namespace
+
+double evaluate(const MeasuredCurve& curve, double r) { return differentiate(curve, r).v; }
+
+Jet<double> differentiate(const MeasuredCurve& curve, double r) { return evaluate_inside(curve, r); }
+
+Jet<Quad> differentiate(const MeasuredCurve& curve, const Quad& r) { return evaluate_inside(curve, r); }
 
 Jet<Interval> enclose_jet(const MeasuredCurve& curve, const Interval& cell) {
   if (cell.lo < curve.r.front() || cell.hi > curve.r.back()) {

@@ -28,6 +28,7 @@ MeasuredCurve fit_measured(const std::vector<Vec2>& rows, const std::string& nam
 /// NaN outside the knots.
 double evaluate(const MeasuredCurve& curve, double r);
 Jet<double> differentiate(const MeasuredCurve& curve, double r);
+Jet<Quad> differentiate(const MeasuredCurve& curve, const Quad& r);
 /// The cell must lie between two neighbouring knots.
 Jet<Interval> enclose_jet(const MeasuredCurve& curve, const Interval& cell);
 

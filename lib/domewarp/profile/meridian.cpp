@@ -79,7 +79,7 @@ Vec2 curve_point(const Curve& curve, const Span& span, double s, double c) {
   if (!((span.z_high * s - span.r_high * c) * sign < 0)) return {span.r_high, span.z_high};
   const auto function = [&](double r) {
     const Jet<double> f = differentiate(curve, r);
-    return ValueAndSlope{f.v * s - r * c, f.d * s - c};
+    return ValueAndSlope<double>{f.v * s - r * c, f.d * s - c};
   };
   const double low = half_angle_index(std::sin(span.theta_at_low), std::cos(span.theta_at_low));
   const double high = half_angle_index(std::sin(span.theta_at_high), std::cos(span.theta_at_high));

@@ -120,7 +120,7 @@ Crossings cross(const Surface& surface, double theta) {
   }
   const auto& [point, tangent] = surface.rim();
   const double slant = c * tangent.x - s * tangent.y;
-  if (found.visible.empty() && surface.extended_radius(s, c))
+  if (found.visible.empty() && surface.extended_radius({s, 0, -c}))
     found.extended = (point.y * tangent.x - point.x * tangent.y) / slant * Vec2(s, c);
   return found;
 }

@@ -69,15 +69,50 @@ RadialJet Surface::radial(std::size_t branch, double theta) const {
   return compensate(parts_->distance, curve_meridian(parts_->curve, span, theta, point));
 }
 
-std::optional<double> Surface::extended_radius(double s, double c) const {
-  const auto& [point, tangent] = parts_->rim;
-  const double moment = point.y * tangent.x - point.x * tangent.y;
-  const double slant = c * tangent.x - s * tangent.y;
+namespace {
+
+// Whether rounding moves the root r of F(r) = f(r) s - r c, and its compensated radius, by less than the direct method
+// promises: from the enclosure of f at r, which holds all the rounding there can be.
+bool is_certain(const SurfaceParts& parts, const Vec2& point, double s, double c) {
+  constexpr double promise = 4e-14, rounding = 4.5e-16;
+  const Jet<Interval> f = enclose_jet(parts.curve, Interval(point.x));
+  const double slope = std::abs(differentiate(parts.curve, point.x).d * s - c);
+  const double noise = (f.v.hi - f.v.lo) * s + rounding * (std::abs(f.v.hi) * s + point.x * std::abs(c));
+  const double z = std::abs(point.y), d = parts.distance;
+  const bool compensates = std::isinf(d) || rounding * (z + d) <= 0.1 * promise * (point.y + d);
+  return compensates && noise <= promise * point.x * slope;
+}
+
+} // namespace
+
+double Surface::radius(std::size_t branch, const Vec3& p) const {
+  const double side = std::hypot(p.x, p.y), length = std::hypot(side, p.z), s = side / length, c = -p.z / length;
+  if (parts_->lens) return radius(branch, s, c);
+  const Span& span = parts_->spans[branch];
+  const Vec2 point = curve_point(parts_->curve, span, s, c);
+  if (is_certain(*parts_, point, s, c)) return compensate(parts_->distance, point.x, point.y);
+  const QuadPoint exact =
+      meet(parts_->curve, span.low, span.high, span.orientation, about_axis(p), point.x);
+  if (std::isinf(parts_->distance)) return static_cast<double>(exact.r);
+  return static_cast<double>(exact.r * parts_->distance / (exact.z + parts_->distance));
+}
+
+bool Surface::shows(std::size_t branch, const Vec3& p) const {
+  const QuadPoint direction = about_axis(p);
+  const Span& span = parts_->spans[branch];
+  const bool after_low = span.r_low == 0 || side_of(span.low, direction) * span.orientation >= 0;
+  return after_low && side_of(span.high, direction) * span.orientation <= 0;
+}
+
+std::optional<double> Surface::extended_radius(const Vec3& p) const {
+  const auto [s, c] = about_axis(p);
+  const QuadPoint rim = parts_->spans.back().high, tangent = parts_->rim_tangent;
+  const Quad moment = rim.z * tangent.r - rim.r * tangent.z, slant = c * tangent.r - s * tangent.z;
   if (!(moment * slant > 0)) return std::nullopt;
-  const double r = s * (moment / slant), z = c * (moment / slant);
-  if (!(r >= point.x * (1 - 1e-12)) || !(z + parts_->distance > 0)) return std::nullopt;
-  const double image = std::max(compensate(parts_->distance, r, z), parts_->r_max);
-  return std::isfinite(image) ? std::optional(image) : std::nullopt;
+  const Quad r = s * (moment / slant), depth = c * (moment / slant) + parts_->distance;
+  if (!(r >= rim.r * (Quad(1) - 1e-25)) || !(depth > 0)) return std::nullopt;
+  const double image = static_cast<double>(std::isinf(parts_->distance) ? r : r * parts_->distance / depth);
+  return std::isfinite(image) ? std::optional(std::max(image, parts_->r_max)) : std::nullopt;
 }
 
 namespace {
@@ -126,13 +161,13 @@ std::optional<Vec2> Surface::meridian(double image_radius) const {
     const MeridianJet m = lens_meridian(*parts_->lens, theta);
     return Vec2{m.r.r, m.z.r};
   }
-  if (std::isinf(d)) return Vec2{image_radius, evaluate(parts_->curve, image_radius)};
   if (image_radius == 0) return Vec2{0, first.z_low};
   if (image_radius == parts_->r_max) return Vec2{last.r_high, last.z_high};
+  if (std::isinf(d)) return Vec2{image_radius, evaluate(parts_->curve, image_radius)};
   // Eq. 24 in homogeneous form: the ray from the projector through the image point meets the curve.
   const auto function = [&](double r) {
     const Jet<double> f = differentiate(parts_->curve, r);
-    return ValueAndSlope{r * d - image_radius * (f.v + d), d - image_radius * f.d};
+    return ValueAndSlope<double>{r * d - image_radius * (f.v + d), d - image_radius * f.d};
   };
   const double guess = last.r_high * image_radius / parts_->r_max;
   const double r = find_root(function, first.r_low, last.r_high, guess, -1);
@@ -157,9 +192,9 @@ std::optional<Vec2> Surface::direction(double image_radius) const {
   } else if (image_radius > 0) {
     const auto function = [&](double t) {
       const RadialJet jet = compensate(parts_->distance, lens_meridian(*parts_->lens, t));
-      return ValueAndSlope{jet.r - image_radius, jet.dr};
+      return ValueAndSlope<double>{jet.r - image_radius, jet.dr};
     };
-    theta = find_root(function, 0, range.theta_high, range.theta_high * image_radius / parts_->r_max, -1);
+    theta = find_root(function, 0.0, range.theta_high, range.theta_high * image_radius / parts_->r_max, -1);
   }
   return Vec2{std::sin(theta), theta == 0.5 * pi ? 0 : std::cos(theta)};
 }

@@ -105,15 +105,22 @@ public:
   /// outside the branch give the radius at its nearer end.
   double radius(std::size_t branch, double s, double c) const;
 
+  /// The same for an eye-space point, finite and not zero, to 1e-13 of R for every direction: where rounding could move
+  /// R by more (beside a fold, in a curve that cancels) it is settled with 113 bits.
+  double radius(std::size_t branch, const Vec3& p) const;
+
+  /// Whether the branch shows the direction of an eye-space point, finite and not zero: exact, in 113 bits.
+  bool shows(std::size_t branch, const Vec3& p) const;
+
   /// R, R', R'' at theta, clamped to the branch. Infinite slopes (fold) come back as the largest finite value.
   RadialJet radial(std::size_t branch, double theta) const;
 
   /// Enclosures over [theta_low, theta_high], clamped to the branch: R' and R'' contain the one-sided derivatives at kinks.
   RadialEnclosure enclose(std::size_t branch, double theta_low, double theta_high) const;
 
-  /// The tangent extension beyond r_max in homogeneous form (valid for vertical tangents): image radius for a direction
-  /// no branch contains, after compensation; nothing for a blind direction.
-  std::optional<double> extended_radius(double s, double c) const;
+  /// The tangent extension beyond r_max in homogeneous form (valid for vertical tangents): image radius for an eye-space
+  /// point whose direction no branch shows, after compensation; nothing for a blind direction. In 113 bits.
+  std::optional<double> extended_radius(const Vec3& p) const;
 
   /// The inverse, for rays: sine and cosine of theta of the direction seen at an image radius (corrected Eq. 25
   /// when there is a projector); nothing beyond r_max.

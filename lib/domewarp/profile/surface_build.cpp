@@ -101,8 +101,11 @@ Branch make_branch(const Span& span, double distance) {
 
 double angle_of(const Curve& curve, double r) { return std::atan2(r, evaluate(curve, r)); }
 
-Span make_span(const Curve& curve, double a, double b) {
-  Span span{a, b, evaluate(curve, a), evaluate(curve, b), angle_of(curve, a), angle_of(curve, b), 1};
+double angle_of(const QuadPoint& p) { return static_cast<double>(atan2(p.r, p.z)); }
+
+Span make_span(const QuadPoint& low, const QuadPoint& high) {
+  const auto rounded = [](const Quad& x) { return static_cast<double>(x); };
+  Span span{rounded(low.r), rounded(high.r), rounded(low.z), rounded(high.z), angle_of(low), angle_of(high), 1, low, high};
   if (span.theta_at_high < span.theta_at_low) span.orientation = -1;
   return span;
 }
@@ -135,9 +138,9 @@ std::vector<Kink> describe_kinks(const SurfaceParts& parts, const std::vector<do
 }
 
 // One branch for each stretch between folds; stretches too short to hold a direction are dropped.
-void add_branches(SurfaceParts& parts, const std::vector<double>& ends, const std::vector<double>& kinks) {
+void add_branches(SurfaceParts& parts, const std::vector<QuadPoint>& ends, const std::vector<double>& kinks) {
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const Span span = make_span(parts.curve, ends[i], ends[i + 1]);
+    const Span span = make_span(ends[i], ends[i + 1]);
     if (std::abs(span.theta_at_high - span.theta_at_low) < 1e-12) continue;
     Branch branch = make_branch(span, parts.distance);
     const bool inner = i > 0, outer = i + 2 < ends.size() || parts.limit == RadiusLimit::fold;
@@ -151,16 +154,33 @@ void add_branches(SurfaceParts& parts, const std::vector<double>& ends, const st
     refuse(source(parts.options), "the surface shows nothing within an image radius of " + to_text(parts.r_max));
 }
 
-SurfaceRim curve_rim(const SurfaceParts& parts) {
+// The direction in which the surface goes on after its last branch; none where that ends in a fold.
+QuadPoint rim_tangent(const SurfaceParts& parts) {
   const Span& last = parts.spans.back();
   const Branch& branch = parts.branches.back();
-  const Vec2 point(last.r_high, last.z_high);
-  if (last.orientation > 0 ? branch.fold_high : branch.fold_low) return {point, {0, 0}};
-  double slope = differentiate(parts.curve, last.r_high).d;
-  if (std::isnan(slope)) slope = differentiate(parts.curve, last.r_high * (1 - 1e-12)).d;
-  if (std::abs(slope) > steepest) return {point, {0, slope > 0 ? 1 : -1}};
-  const double length = std::hypot(1, slope);
-  return {point, {1 / length, slope / length}};
+  if (last.orientation > 0 ? branch.fold_high : branch.fold_low) return {0, 0};
+  Quad slope = differentiate(parts.curve, last.high.r).d;
+  if (isnan(slope)) slope = differentiate(parts.curve, last.r_high * (1 - 1e-12)).d;
+  if (abs(slope) > steepest) return {0, slope > 0 ? 1 : -1};
+  return {1, slope};
+}
+
+SurfaceRim curve_rim(const SurfaceParts& parts) {
+  const Span& last = parts.spans.back();
+  const Vec2 tangent(static_cast<double>(parts.rim_tangent.r), static_cast<double>(parts.rim_tangent.z));
+  const double length = std::max(std::hypot(tangent.x, tangent.y), 1.0); // 0 at a fold
+  return {{last.r_high, last.z_high}, tangent / length};
+}
+
+// The end of the visible part to 30 digits.
+QuadPoint refine_end(const SurfaceParts& parts, const Limit& end, const Limit& picture) {
+  const bool compensated = std::isfinite(parts.distance);
+  if (end.reason == RadiusLimit::domain) return refine_domain_end(parts.curve, end.radius);
+  if (end.reason == RadiusLimit::fold) return refine_fold(parts.curve, end.radius, 0);
+  if (end.reason == picture.reason && compensated)
+    return refine_picture_end(parts.curve, end.radius, parts.distance, picture.radius);
+  if (end.radius == parts.hidden_from) return refine_fold(parts.curve, end.radius, parts.distance);
+  return point_on(parts.curve, end.radius);
 }
 
 // Whether a corner of the curve is a fold as well.
@@ -191,12 +211,14 @@ void build_curve(SurfaceParts& parts, const Limit& picture) {
   std::vector<double> kinks = find_kinks(parts.curve, end);
   parts.kinks = describe_kinks(parts, kinks);
   std::erase_if(kinks, [&](double r) { return is_among(folds, r, 1e-12 * end); });
-  folds.insert(folds.begin(), 0);
-  folds.push_back(end);
-  add_branches(parts, folds, kinks);
+  std::vector<QuadPoint> ends{point_on(parts.curve, 0)};
+  for (const double fold : folds) ends.push_back(refine_fold(parts.curve, fold, 0));
+  ends.push_back(refine_end(parts, {end, reason}, picture));
+  add_branches(parts, ends, kinks);
   // The same number, whichever way it was rounded.
   Branch& last = parts.branches.back();
   if (parts.spans.back().r_high == end) (last.orientation > 0 ? last.radius_high : last.radius_low) = parts.r_max;
+  parts.rim_tangent = rim_tangent(parts);
   parts.rim = curve_rim(parts);
 }
 
@@ -217,8 +239,12 @@ void build_lens(SurfaceParts& parts, const Limit& picture) {
   const MeridianJet m = lens_meridian(*parts.lens, end);
   parts.r_max = !whole ? picture.radius : std::isinf(parts.distance) ? 1 : compensate(parts.distance, m.r.r, m.z.r);
   parts.branches = {{0, end, 0, parts.r_max, 1}};
-  parts.spans = {{0, m.r.r, 0, m.z.r, 0, end, 1}};
+  const SurfaceOptions& options = parts.options;
+  const LensEnd exact =
+      refine_lens_end(*options.lens, options.fov_deg, end, parts.distance, whole ? infinity : picture.radius);
+  parts.spans = {{0, m.r.r, 0, m.z.r, 0, end, 1, {0, 1}, exact.point}};
   parts.joints = {{}};
+  parts.rim_tangent = exact.tangent;
   const double length = std::hypot(m.r.dr, m.z.dr);
   parts.rim = {{m.r.r, m.z.r}, {m.r.dr / length, m.z.dr / length}};
 }

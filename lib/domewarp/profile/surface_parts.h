@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "domewarp/profile/curve.h"
+#include "domewarp/profile/exact.h"
 #include "domewarp/profile/lens.h"
 #include "domewarp/profile/surface.h"
 
@@ -16,6 +17,7 @@ struct Span {
   double z_low = 0, z_high = 0;
   double theta_at_low = 0, theta_at_high = 0;
   int orientation = 1;
+  QuadPoint low{0, 0}, high{0, 0}; ///< the ends once more
 };
 
 /// What a Surface consists of.
@@ -33,6 +35,7 @@ struct SurfaceParts {
   std::vector<std::vector<double>> joints;
   std::vector<Kink> kinks;
   SurfaceRim rim;
+  QuadPoint rim_tangent{0, 0}; ///< the rim's tangent once more, of any length
 };
 
 /// R and z along the branch, before the projector's compensation, with derivatives in theta.

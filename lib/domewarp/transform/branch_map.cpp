@@ -17,6 +17,8 @@ namespace {
 // sin(theta) below which K has reached its value on the axis.
 constexpr double smallest_sine = 1e-150;
 
+constexpr double rounding = 1e-15; // of a half-angle index
+
 } // namespace
 
 namespace {
@@ -65,7 +67,8 @@ struct BranchMap::Impl {
   };
 
   double direct_radius(const Polar& p) const {
-    return surface.radius(index, std::max(p.r / p.rho, smallest_sine), p.z / p.rho);
+    if (p.r < smallest_sine * p.rho) return surface.radius(index, smallest_sine, p.z / p.rho);
+    return surface.radius(index, Vec3(p.x, p.y, -p.z));
   }
 
   Values values(const Polar& p, double u) const {
@@ -77,8 +80,9 @@ struct BranchMap::Impl {
     return {value.fine ? std::clamp(value.ratio * u, least, most) : direct_radius(p), value.g};
   }
 
-  bool is_below(double u) const { return u < u_low; }
-  bool is_above(double u) const { return u > u_high; }
+  // Directions that rounding cannot tell from an end get values of their own: beside a fold R moves by much more.
+  bool is_below(double u) const { return u < u_low - rounding; }
+  bool is_above(double u) const { return u > u_high + rounding; }
 };
 
 BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method) {

@@ -2,12 +2,23 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 #include "domewarp/transform/image_map.h"
 #include "domewarp/transform/polar.h"
 
 namespace domewarp {
 
 namespace {
+
+// Whether the branch shows the direction of p. Doubles decide unless p is within their rounding of the cone's edge.
+// @param scaled p by a power of two, of moderate length
+bool shows(const Surface& surface, std::size_t index, const BranchMap& branch, const Vec3& p, const Vec3& scaled) {
+  const double margin = 1e-14 * glm::length(scaled);
+  const Vec2 within = branch.inside(scaled);
+  if (within.x < -margin || within.y < -margin) return false;
+  return (within.x > margin && within.y > margin) || surface.shows(index, p);
+}
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -33,14 +44,13 @@ ImagePoint project(const Surface& surface, const ImageMap& map, const Vec3& p) {
   const ImagePoint blind{nan, nan, std::hypot(p.x, p.y, p.z), PointState::blind};
   if (!is_finite(p) || p == Vec3(0)) return blind;
   const Polar q = polar(p);
-  const Vec3 scaled(q.x, q.y, -q.z); // signs of inside() survive where p is denormal
-  for (const BranchMap& branch : map.branches) {
-    const Vec2 within = branch.inside(scaled);
-    if (within.x < 0 || within.y < 0) continue;
-    const Vec2 image = branch.image(scaled);
+  const Vec3 scaled(q.x, q.y, -q.z);
+  for (std::size_t i = 0; i < map.branches.size(); ++i) {
+    if (!shows(surface, i, map.branches[i], p, scaled)) continue;
+    const Vec2 image = map.branches[i].image(scaled);
     return {image.x, image.y, blind.depth, PointState::visible};
   }
-  const std::optional<double> radius = surface.extended_radius(q.r / q.rho, q.z / q.rho);
+  const std::optional<double> radius = surface.extended_radius(p);
   if (!radius) return blind;
   const Vec2 image = *radius * side(q);
   return {image.x, image.y, blind.depth, PointState::extended};

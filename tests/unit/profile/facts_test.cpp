@@ -24,6 +24,8 @@ Surface curve_surface(const std::string& text, double screen = 5.0 / 3, double p
   return {options, screen};
 }
 
+Vec3 towards(double theta) { return {std::sin(theta), 0, -std::cos(theta)}; }
+
 double degrees(double radians) { return radians * 180 / pi; }
 
 void expect_blind(const Surface& surface, double from, double to) {
@@ -51,7 +53,7 @@ TEST(Facts, TheBlindConeAgreesWithWhatIsExtended) {
     for (int i = 1; i < 2000; ++i) {
       const double theta = pi * i / 2000;
       const bool seen = theta >= visible.x && theta <= visible.y;
-      const bool shown = seen || surface.extended_radius(std::sin(theta), std::cos(theta)).has_value();
+      const bool shown = seen || surface.extended_radius(towards(theta)).has_value();
       ASSERT_EQ(shown, !(theta > blind.theta_low && theta < blind.theta_high)) << name_of(surface) << " " << theta;
     }
   }

@@ -71,6 +71,7 @@ inline Real cot(const Real& a) { return Real::apply(mpfr_cot, a); }
 inline Real asin(const Real& a) { return Real::apply(mpfr_asin, a); }
 inline Real acos(const Real& a) { return Real::apply(mpfr_acos, a); }
 inline Real atan(const Real& a) { return Real::apply(mpfr_atan, a); }
+inline Real atan2(const Real& y, const Real& x) { return Real::apply(mpfr_atan2, y, x); }
 inline Real sinh(const Real& a) { return Real::apply(mpfr_sinh, a); }
 inline Real cosh(const Real& a) { return Real::apply(mpfr_cosh, a); }
 inline Real tanh(const Real& a) { return Real::apply(mpfr_tanh, a); }

@@ -39,6 +39,8 @@ std::string complaint(const SurfaceOptions& options, double screen = corner) {
   return "";
 }
 
+Vec3 towards(double theta) { return {std::sin(theta), 0, -std::cos(theta)}; }
+
 double degrees(double radians) { return radians * 180 / pi; }
 
 TEST(Surface, ShowsTheFourBranchesOfFigure21b) {
@@ -133,8 +135,8 @@ TEST(Surface, ALensAndItsProfileCurveAreTheSameSurface) {
         EXPECT_NEAR(ja.d2r, jb.d2r, 1e-8);
       }
       for (double theta = a.branches()[0].theta_high + 1e-3; theta < pi; theta += 0.01) {
-        const auto ra = a.extended_radius(std::sin(theta), std::cos(theta));
-        const auto rb = b.extended_radius(std::sin(theta), std::cos(theta));
+        const auto ra = a.extended_radius(towards(theta));
+        const auto rb = b.extended_radius(towards(theta));
         ASSERT_EQ(ra.has_value(), rb.has_value()) << theta;
         if (ra) {
           EXPECT_NEAR(*ra, *rb, 1e-9 * *ra * *ra);
@@ -204,21 +206,21 @@ TEST(Surface, TheTangentExtensionIsThatOfEquation16) {
   const double slope = -2 * corner, z = 1 - corner * corner;
   EXPECT_NEAR(surface.blind().theta_low, pi / 2 - std::atan(slope), 1e-14);
   for (double theta = surface.branches()[0].theta_high + 1e-6; theta < pi; theta += 0.01) {
-    const auto radius = surface.extended_radius(std::sin(theta), std::cos(theta));
+    const auto radius = surface.extended_radius(towards(theta));
     ASSERT_EQ(radius.has_value(), theta < surface.blind().theta_low) << theta;
     if (radius) {
       EXPECT_NEAR(*radius, (slope * corner - z) / (slope - 1 / std::tan(theta)), 1e-12 * *radius * *radius);
     }
   }
-  EXPECT_FALSE(surface.extended_radius(0, -1));
+  EXPECT_FALSE(surface.extended_radius({0, 0, 1}));
 }
 
 TEST(Surface, AVerticalTangentExtendsAlongItself) {
   const Surface surface(curve_options("sqrt(1-r^2)"), corner);
   EXPECT_EQ(surface.blind().theta_low, pi);
   for (const double theta : {1.6, 2.0, 3.0, 3.14})
-    EXPECT_NEAR(*surface.extended_radius(std::sin(theta), std::cos(theta)), 1, 1e-15);
-  EXPECT_FALSE(surface.extended_radius(0, -1));
+    EXPECT_NEAR(*surface.extended_radius(towards(theta)), 1, 1e-15);
+  EXPECT_FALSE(surface.extended_radius({0, 0, 1}));
 }
 
 TEST(Surface, BeyondAFoldAllIsBlind) {
@@ -228,7 +230,7 @@ TEST(Surface, BeyondAFoldAllIsBlind) {
   const double end = surface.branches()[0].theta_high;
   EXPECT_EQ(surface.blind().theta_low, end);
   for (double theta = end + 1e-9; theta <= pi; theta += 0.01)
-    EXPECT_FALSE(surface.extended_radius(std::sin(theta), std::cos(theta))) << "erratum 8: the image centre";
+    EXPECT_FALSE(surface.extended_radius(towards(theta))) << "erratum 8: the image centre";
 }
 
 TEST(Surface, AFlatPictureIsRectilinear) {
