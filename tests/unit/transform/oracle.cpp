@@ -49,14 +49,16 @@ public:
     const Real last = ends_[count].r;
     tangent_ = {Real(1), slope(curve, last)};
     if (tangent_.z.is_nan()) tangent_ = {Real(0), Real(-1)}; // no curve beyond: all of these drop vertically
+    // Where the tangent passes the projector.
+    const Real down = -Real(distance_);
+    behind_ = {last + tangent_.r * (down - ends_[count].z) / tangent_.z, down};
   }
 
   Answer answer(const Vec3& p) const override {
     const Direction way = direction_of(p);
     const std::size_t count = ends_.size() - 1;
-    const bool is_exact = distance_ == 0 && count == 1; // r_max is a double then, and no fold is involved
-    bool is_close = touches(tangent_, way);
-    for (std::size_t i = 1; i < ends_.size() && !is_exact; ++i) is_close = is_close || touches(ends_[i], way);
+    bool is_close = touches(tangent_, way) || touches(behind_, way);
+    for (const End& end : ends_) is_close = is_close || (!is_double(end) && touches(end, way));
     for (std::size_t i = 0; i < count; ++i)
       if (contains(i, way)) return {PointState::visible, i, is_close};
     return {is_extended(way) ? PointState::extended : PointState::blind, 0, is_close};
@@ -105,6 +107,11 @@ private:
   // Positive where the direction is farther from the forward axis than the end.
   static Real beyond(const End& end, const Direction& way) { return way.s * end.z - way.c * end.r; }
 
+  static bool is_double(const End& end) {
+    const auto rounds = [](const Real& x) { return x.compare(static_cast<double>(x)) != 0; };
+    return !rounds(end.r) && !rounds(end.z);
+  }
+
   static bool touches(const End& end, const Direction& way) {
     return abs(beyond(end, way)) < Real("1e-30") * (way.s + abs(way.c)) * (abs(end.r) + abs(end.z));
   }
@@ -144,7 +151,7 @@ private:
   ReferenceCurve curve_;
   double distance_;
   std::vector<End> ends_;
-  End tangent_{Real(0), Real(0)};
+  End tangent_{Real(0), Real(0)}, behind_{Real(0), Real(0)};
 };
 
 class LensOracle : public Oracle {
