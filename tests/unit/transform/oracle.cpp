@@ -51,7 +51,7 @@ public:
     if (tangent_.z.is_nan()) tangent_ = {Real(0), Real(-1)}; // no curve beyond: all of these drop vertically
     // Where the tangent passes the projector.
     const Real down = -Real(distance_);
-    behind_ = {last + tangent_.r * (down - ends_[count].z) / tangent_.z, down};
+    if (distance_ > 0) behind_ = {last + tangent_.r * (down - ends_[count].z) / tangent_.z, down};
   }
 
   Answer answer(const Vec3& p) const override {
