@@ -39,7 +39,7 @@ Scene cave(std::size_t triangles) {
   for (std::uint32_t i = 0; i < rows; ++i)
     for (std::uint32_t j = 0; j < columns; ++j) {
       const std::uint32_t a = i * (columns + 1) + j, b = a + 1, c = a + columns + 1, d = c + 1;
-      primitive.indices.insert(primitive.indices.end(), {a, b, c, b, d, c});
+      primitive.indices.insert(primitive.indices.end(), {a, c, b, b, c, d});
     }
   primitive.attributes = {std::move(normal), std::move(uv)};
   primitive.material = 0;
@@ -142,6 +142,7 @@ Row measure(std::size_t triangles, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     const Measured convert = in_child([&] { return convert_only(input, output); });
     const Measured floor = in_child([&] { return read_and_write(input, output, copy); });
+    if (convert.triangles == 0) throw Error(ErrorCode::output, "nothing of the scene was drawn: nothing was measured");
     if (convert.seconds < row.convert.seconds) row.convert = convert;
     if (floor.seconds < row.floor.seconds) row.floor = floor;
   }
