@@ -88,7 +88,11 @@ std::vector<JobArgument> given_arguments(const CLI::App& command) {
     if (option->count() == 0 || option->get_lnames().empty()) continue;
     const std::string name = option->get_lnames().front();
     if (name == "help" || find_option(reference, name) == nullptr) continue;
-    given.push_back({name, is_flag(*option) ? std::nullopt : std::optional(option->results().front()), "--" + name});
+    if (is_flag(*option)) {
+      given.push_back({name, std::nullopt, "--" + name});
+      continue;
+    }
+    for (const std::string& value : option->results()) given.push_back({name, value, "--" + name});
   }
   return given;
 }

@@ -183,7 +183,9 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
   add_choice<Projection>(*group, "--projection", "Camera of the written file (default perspective)",
                          {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
                          [&options](Projection projection) { options.refine.projection = projection; });
-  group->add_flag("--unlit", options.unlit, "Mark every material KHR_materials_unlit");
+  add_choice<bool>(*group, "--shading", "keep: normals and directional lights in eye space; unlit: colours as they are (default keep)",
+                   {{"keep", false}, {"unlit", true}}, [&options](bool unlit) { options.unlit = unlit; });
+  group->add_flag("--unlit", options.unlit, "The same as --shading unlit: mark every material KHR_materials_unlit");
   group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");
 }
 

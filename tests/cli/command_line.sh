@@ -51,7 +51,12 @@ refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --animation wa
 refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --time 1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 3:1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 0:1
+refuses 1 --shard batch "$scene" --out out --lens equidistant --shard 3/2
+refuses 1 --jobs batch "$scene" --out out --lens equidistant --jobs 0
+refuses 1 --max-memory batch "$scene" --out out --lens equidistant --max-memory 1
 refuses 4 nowhere convert "$scene" -o nowhere/out.glb --curve '1-r^2' --quiet
+printf '{"scenes": [\n {"input": "a.glb", "tolerance": -1}]}' >in_jobs.json
+refuses 2 in_jobs.json:2:21 batch in_jobs.json --out out --lens equidistant
 refuses 2 extras compare "$scene" "$scene"
 
 same() { # NAME EXPECTED GOT
@@ -86,6 +91,33 @@ same "stopped by --max-triangles" 3 $?
 "$domewarp" convert "$scene" -o one.glb --curve '1-r^2' --threads 1 --quiet
 "$domewarp" convert "$scene" -o two.glb --curve '1-r^2' --threads 2 --quiet
 check "same bytes for 1 and 2 threads" cmp -s one.glb two.glb
+
+# Batch: structure kept, a bad scene does not stop the rest, a second run does nothing, shards cover all, killed runs resume.
+mkdir -p in_many/sub
+for i in 1 2 3 4 5 6; do cp "$root/data/cubes.glb" "in_many/sub/$i.glb"; done
+cp in_broken.glb in_many/
+quick="--lens equidistant --size 512x512"
+"$domewarp" batch in_many --out many $quick >stdout 2>stderr
+same "batch with a broken scene" 2 $?
+check "the broken scene is named" grep -q in_broken.glb stderr
+same "outputs of the others" 6 "$(ls many/sub/*.glb | wc -l)"
+same "no progress bar in a pipe" 1 "$(wc -l <stderr)"
+rm in_many/in_broken.glb
+"$domewarp" batch in_many --out many $quick --json >stdout
+same "batch again" 0 $?
+check "nothing is done twice" grep -q '"up_to_date": 6,' stdout
+for k in 1 2 3; do "$domewarp" batch in_many --out shards $quick --shard $k/3 --quiet; done
+check "shards write what one run writes" diff -r many/sub shards/sub
+for pause in 0.02 0.05 0.1; do
+  "$domewarp" batch in_many --out killed $quick --jobs 1 --quiet &
+  sleep $pause
+  kill -9 $! 2>/dev/null
+  wait $! 2>/dev/null
+done
+"$domewarp" batch in_many --out killed $quick --quiet
+same "batch after kill -9" 0 $?
+check "a killed run resumes to the same files and leaves none" diff -r -x .domewarp many/sub killed/sub
+rm -rf many shards killed
 
 # The generator still makes the committed scenes, byte for byte.
 "$domewarp" scenes --out scenes >/dev/null

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<JobArgument>;
 
 /// Options of which the last one given counts.
-const std::array<std::set<std::string>, 3> alternatives = {
-    std::set<std::string>{"curve", "lens", "profile"}, {"target", "forward"}, {"eye", "camera"}};
+const std::array<std::set<std::string>, 4> alternatives = {
+    std::set<std::string>{"curve", "lens", "profile"}, {"target", "forward"}, {"eye", "camera"}, {"shading", "unlit"}};
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();

@@ -27,6 +27,21 @@ void note_display(const Display& display, ConvertReport& report) {
   for (const BranchMap& branch : display.map.branches) report.tables.push_back(branch.table());
 }
 
+/// The lights that stay right when everything else is warped: normals are in eye space, and so are the directions of these.
+/// Point and spot lights have a place, and no place in the warped space shines on all surfaces as theirs did.
+std::vector<Light> lights_in_eye_space(const Scene& scene, const View& view, std::vector<std::string>& warnings) {
+  std::vector<Light> lights;
+  for (const Light& light : scene.lights) {
+    if (light.kind != LightKind::directional) continue;
+    lights.push_back(light);
+    lights.back().world = world_to_eye(view) * light.world;
+    lights.back().world[3] = Vec4(0, 0, 0, 1);
+  }
+  if (lights.size() < scene.lights.size())
+    warnings.push_back("left out " + std::to_string(scene.lights.size() - lights.size()) + " point or spot light(s), which would shine wrongly on warped surfaces");
+  return lights;
+}
+
 } // namespace
 
 Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report, const Progress& progress) {
@@ -53,6 +68,8 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);
   if (options.unlit)
     for (Material& material : warped.materials) material.unlit = true;
+  else
+    warped.lights = lights_in_eye_space(scene, report.view, report.warnings);
   report.total_ms = ms_since(start);
   report.peak_memory_mb = static_cast<double>(peak_memory()) / (1 << 20);
   warped.extras = to_json(make_record(options, report));
