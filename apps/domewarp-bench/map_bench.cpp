@@ -1,42 +1,226 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <random>
+#include <string>
+#include <utility>
+
+#include <hwy/targets.h>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "benches.h"
-#include "domewarp/transform/image_map.h"
+#include "domewarp/core/parallel.h"
+#include "domewarp/transform/batch.h"
+#include "thesis_methods.h"
 #include "timing.h"
 
 namespace domewarp::bench {
 
 namespace {
 
-std::vector<Vec3> random_points(std::size_t count) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<Vec3> points(count);
-  for (Vec3& p : points) p = {normal(random), normal(random), -std::abs(normal(random))};
-  return points;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+struct Cloud {
+  std::vector<float> values;
+  std::size_t count() const { return values.size() / 3; }
+  Points split() { return {values.data(), values.data() + count(), values.data() + 2 * count(), 1}; }
+  Points mixed() { return interleaved(values.data()); }
+};
+
+Cloud random_directions(std::size_t count) {
+  std::mt19937 random(1);
+  std::normal_distribution<float> normal;
+  Cloud cloud{std::vector<float>(3 * count)};
+  for (float& value : cloud.values) value = normal(random);
+  return cloud;
+}
+
+void copy(const std::vector<float>& in, std::vector<float>& out) {
+  for (std::size_t i = 0; i < in.size(); ++i) out[i] = 1.5F * in[i];
+}
+
+// Past the caches, as the kernel writes large arrays.
+void copy_streaming(const std::vector<float>& in, std::vector<float>& out) {
+#if defined(__SSE2__)
+  std::size_t i = 0;
+  for (; reinterpret_cast<std::uintptr_t>(&out[i]) % 16 != 0; ++i) out[i] = 1.5F * in[i];
+  const __m128 factor = _mm_set1_ps(1.5F);
+  for (; i + 4 <= in.size(); i += 4) _mm_stream_ps(&out[i], _mm_mul_ps(factor, _mm_loadu_ps(&in[i])));
+  for (; i < in.size(); ++i) out[i] = 1.5F * in[i];
+  _mm_sfence();
+#else
+  copy(in, out);
+#endif
+}
+
+struct Error {
+  double most = 0, rms = 0;
+};
+
+// Of the visible ones among the first points, against the direct method in double precision.
+Error measure(const Surface& surface, const Cloud& in, const Cloud& out, bool is_split) {
+  constexpr std::size_t enough = 20000;
+  const ImageMap exact = make_image_map(surface, Method::direct);
+  const std::size_t count = in.count(), stride = is_split ? 1 : 3, next = is_split ? count : 1;
+  Error error;
+  std::size_t visible = 0;
+  for (std::size_t i = 0; i < std::min(count, enough); ++i) {
+    const std::size_t at = i * stride;
+    const ImagePoint point = project(surface, exact, {in.values[at], in.values[at + next], in.values[at + 2 * next]});
+    if (point.state != PointState::visible) continue;
+    const double off = std::hypot(out.values[at] - point.x, out.values[at + next] - point.y);
+    error = {std::max(error.most, off), error.rms + off * off};
+    ++visible;
+  }
+  error.rms = std::sqrt(error.rms / static_cast<double>(std::max<std::size_t>(visible, 1)));
+  return error;
+}
+
+struct Way {
+  std::string name;
+  double table_size = nothing; ///< bytes
+  std::function<void()> work;
+  bool is_split = true;
+  bool has_error = true;
+  std::int64_t targets = 0; ///< of Highway; 0: all
+};
+
+std::function<void()> batch_work(const BatchMap& map, Cloud& in, Cloud& out, bool split, BatchOutput output) {
+  return [&map, &in, &out, split, output] {
+    map.map(split ? in.split() : in.mixed(), split ? out.split() : out.mixed(), in.count(), output);
+  };
+}
+
+void add_batches(std::vector<Way>& ways, const BatchMap& map, Cloud& in, Cloud& out) {
+  if (!map.report().vectorised) return;
+  const double bytes = map.report().pieces * (map.report().degree + 1) * 4.0;
+  std::vector<std::pair<std::string, std::int64_t>> sets;
+  if (hwy::SupportedTargets() & HWY_AVX3) sets.emplace_back("AVX-512", HWY_AVX3);
+  if (hwy::SupportedTargets() & HWY_AVX2) sets.emplace_back("AVX2", HWY_AVX2);
+  if (sets.empty()) sets.emplace_back("widest", 0);
+  for (const auto& [name, targets] : sets) {
+    ways.push_back({"float table, " + name, bytes, batch_work(map, in, out, true, BatchOutput::image), true, true, targets});
+    ways.push_back({"float table, interleaved, " + name, bytes, batch_work(map, in, out, false, BatchOutput::image), false, true, targets});
+    ways.push_back({"float table, perspective, " + name, 2 * bytes, batch_work(map, in, out, true, BatchOutput::perspective), true, false, targets});
+  }
+}
+
+// Slow ways are timed on fewer points.
+void add_slow(std::vector<Way>& ways, const Curve& curve, const ThesisTable& table, double r_max, const BatchMap& exact_table,
+              const BatchMap& direct, Cloud& in, Cloud& out) {
+  ways.push_back({"double table", nothing, batch_work(exact_table, in, out, true, BatchOutput::image)});
+  ways.push_back({"direct", 0, batch_work(direct, in, out, true, BatchOutput::image)});
+  ways.push_back({"thesis table", 4.0 * static_cast<double>(table.radii.size()), [&] { map_by_thesis_table(table, in.split(), out.split(), in.count()); }});
+  ways.push_back({"thesis bisection", 0, [&, r_max] { map_by_bisection(curve, r_max, in.split(), out.split(), in.count()); }});
+}
+
+// Asks the CPU what it has here, which takes long, and not in what is timed.
+void choose(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+// The least time of each way per point, in rounds in which all take turns.
+std::vector<double> time_ways(const std::vector<Way>& ways, const Cloud& in, int rounds) {
+  std::vector<double> least(ways.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      choose(ways[i].targets);
+      least[i] = std::min(least[i], seconds(ways[i].work));
+    }
+  choose(0);
+  for (double& time : least) time *= 1e9 / static_cast<double>(in.count());
+  return least;
+}
+
+struct Row {
+  std::string curve;
+  double points;
+  std::string method;
+  double table_size, ns, ratio;
+  Error error;
+};
+
+std::vector<Row> measure_ways(const Surface& surface, const std::vector<Way>& ways, const Cloud& in, Cloud& out, double copy_ns, int rounds) {
+  std::vector<Row> rows;
+  const std::vector<double> times = time_ways(ways, in, rounds);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    Error error{nothing, nothing};
+    if (ways[i].has_error) {
+      choose(ways[i].targets);
+      ways[i].work();
+      error = measure(surface, in, out, ways[i].is_split);
+    }
+    rows.push_back({surface.options().curve, static_cast<double>(in.count()), ways[i].name, ways[i].table_size, times[i], times[i] / copy_ns, error});
+  }
+  choose(0);
+  return rows;
+}
+
+void measure_curve(const std::string& text, std::size_t count, int rounds, std::vector<Row>& rows) {
+  SurfaceOptions options;
+  options.curve = text;
+  const Surface surface(options, 1);
+  const Curve curve = make_curve(text);
+  BatchOptions exactly, directly;
+  exactly.max_error = 0; // no float table is that exact
+  directly.method = Method::direct;
+  const BatchMap map(surface), exact_table(surface, exactly), direct(surface, directly);
+  const ThesisTable thesis = make_thesis_table(curve, surface.r_max());
+
+  Cloud in = random_directions(count), out = in;
+  std::vector<Way> ways{{"copy", 0, [&] { copy(in.values, out.values); }, true, false},
+                        {"copy, streaming", 0, [&] { copy_streaming(in.values, out.values); }, true, false}};
+  add_batches(ways, map, in, out);
+  std::vector<Row> fast = measure_ways(surface, ways, in, out, 1, rounds);
+  const double copy_ns = std::min(fast[0].ns, fast[1].ns);
+  for (Row& row : fast) row.ratio = row.ns / copy_ns;
+
+  Cloud few = random_directions(std::max<std::size_t>(count / 100, 1000)), few_out = few;
+  std::vector<Way> slow;
+  add_slow(slow, curve, thesis, surface.r_max(), exact_table, direct, few, few_out);
+  const std::vector<Row> more = measure_ways(surface, slow, few, few_out, copy_ns, std::min(rounds, 3));
+  rows.insert(rows.end(), fast.begin(), fast.end());
+  rows.insert(rows.end(), more.begin(), more.end());
+}
+
+Table tabulate(const std::vector<Row>& rows) {
+  Table table{"map",
+              "The map on one thread, r_max 1, random directions; ratio to the faster copy with one multiplication",
+              {{"curve", "curve"}, {"points", "points"}, {"method", "method"}, {"table_bytes", "table (B)"},
+               {"ns_per_vertex", "ns/vertex"}, {"ratio_to_copy", "ratio to copy"}, {"max_error", "max error"},
+               {"rms_error", "RMS error"}, {"px_4096", "max px at 4096"}, {"px_8192", "max px at 8192"}},
+              {}};
+  for (const Row& row : rows)
+    table.rows.push_back({row.curve, row.points, row.method, row.table_size, row.ns, row.ratio, row.error.most, row.error.rms,
+                          2048 * row.error.most, 4096 * row.error.most});
+  return table;
+}
+
+Plot draw(const std::vector<Row>& rows) {
+  Plot plot{"map", "Time against error (" + rows.front().curve + ")", {"time per vertex (ns)", true}, {"largest error (image units)", true}, {}};
+  for (const Row& row : rows)
+    if (row.curve == rows.front().curve && row.points == rows.front().points && std::isfinite(row.error.most))
+      plot.series.push_back({row.method, {{row.ns, row.error.most}}, false});
+  return plot;
 }
 
 } // namespace
 
 Result run_map_bench(const Options& options) {
-  const std::vector<Vec3> points = random_points(options.quick ? 1000 : 100000);
-  std::vector<Vec2> images(points.size());
-  const Surface surface({.curve = "1-r^2"}, 1);
-  const BranchMap direct(surface, 0, Method::direct), table(surface, 0, Method::table);
-  const auto all = [&](const BranchMap& map) {
-    return [&] {
-      for (std::size_t i = 0; i < points.size(); ++i) images[i] = map.image(points[i]);
-    };
-  };
-  const std::vector<double> times = least_seconds({all(direct), all(table)}, options.quick ? 1 : 5);
-  const double each = 1e9 / static_cast<double>(points.size());
-  return {{{"map",
-            "The map of 1-r^2 in double precision",
-            {{"method", "method"}, {"ns_per_vertex", "ns/vertex"}},
-            {{"direct", times[0] * each}, {"table", times[1] * each}}}},
-          {},
-          {}};
+  const ThreadLimit one(1);
+  std::vector<Row> rows;
+  const std::vector<std::size_t> counts = options.quick ? std::vector<std::size_t>{2000} : std::vector<std::size_t>{1'000'000, 10'000'000};
+  for (const char* curve : {"1-r^2", "3-sqrt(4+6*r^2)", "-log(r+0.1)"})
+    for (const std::size_t count : counts) {
+      options.progress(std::string(curve) + ", " + std::to_string(count) + " points");
+      measure_curve(curve, count, options.quick ? 1 : count > 5'000'000 ? 9 : 30, rows);
+    }
+  return {{tabulate(rows)}, {draw(rows)}, {"Slow methods are timed on a hundredth of the points."}};
 }
 
 } // namespace domewarp::bench

@@ -48,7 +48,7 @@ bool is_streamed(std::size_t count) {
 }
 
 struct Exact {
-  double x, y, depth, g;
+  double x, y, depth;
 };
 
 } // namespace
@@ -70,17 +70,18 @@ struct BatchMap::Impl {
   Exact map_exactly(const Vec3& p) const {
     const ImagePoint point = project(surface, exact, p);
     const bool has_direction = std::isfinite(point.depth) && point.depth > 0;
-    if (!has_direction) return {point.x, point.y, std::numeric_limits<double>::quiet_NaN(), 1};
+    if (!has_direction) return {point.x, point.y, std::numeric_limits<double>::quiet_NaN()};
     Vec2 image(point.x, point.y);
     const double radius = point.state == PointState::blind ? 0 : std::hypot(image.x, image.y);
     if (point.state == PointState::blind || radius > FloatTable::blind_radius) image = static_cast<double>(FloatTable::blind_radius) * side(polar(p));
-    return {image.x, image.y, point.depth, branch_of(p).factors(p).g};
+    return {image.x, image.y, point.depth};
   }
 
   void map_one(const ConstPoints& in, const Points& out, std::size_t i, BatchOutput output) const {
     const std::size_t from = i * in.stride, to = i * out.stride;
-    const Exact point = map_exactly({in.x[from], in.y[from], in.z[from]});
-    const double w = output == BatchOutput::image ? 1 : point.depth * point.g;
+    const Vec3 p(in.x[from], in.y[from], in.z[from]);
+    const Exact point = map_exactly(p);
+    const double w = output == BatchOutput::image ? 1 : point.depth * branch_of(p).factors(p).g;
     out.x[to] = static_cast<float>(w * point.x);
     out.y[to] = static_cast<float>(w * point.y);
     out.z[to] = static_cast<float>(output == BatchOutput::image ? point.depth : -w);
