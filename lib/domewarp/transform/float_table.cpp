@@ -187,7 +187,7 @@ private:
     FloatTable& table = fit_.table;
     const double blind_from = surface_.blind().theta_low, middle = 0.5 * (branch_.theta_high + blind_from);
     const double s2 = std::sin(middle), c2 = std::cos(middle);
-    const auto radius = surface_.extended_radius(s2, c2);
+    const auto radius = surface_.extended_radius(Vec3(s2, 0, -c2));
     constexpr double narrow = 1e-6;
     if (!radius || blind_from - branch_.theta_high < narrow) {
       table.t_blind = table.t_max;
