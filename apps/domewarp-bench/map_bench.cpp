@@ -203,9 +203,11 @@ Table tabulate(const std::vector<Row>& rows) {
 
 Plot draw(const std::vector<Row>& rows) {
   Plot plot{"map", "Time against error (" + rows.front().curve + ")", {"time per vertex (ns)", true}, {"largest error (image units)", true}, {}};
-  for (const Row& row : rows)
-    if (row.curve == rows.front().curve && row.points == rows.front().points && std::isfinite(row.error.most))
-      plot.series.push_back({row.method, {{row.ns, row.error.most}}, false});
+  for (const Row& row : rows) {
+    const auto is_drawn = [&](const Series& series) { return series.name == row.method; };
+    if (row.curve != rows.front().curve || !std::isfinite(row.error.most) || std::ranges::any_of(plot.series, is_drawn)) continue;
+    plot.series.push_back({row.method, {{row.ns, row.error.most}}, false});
+  }
   return plot;
 }
 
