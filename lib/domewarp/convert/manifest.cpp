@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <iterator>
 #include <set>
 
@@ -68,6 +67,9 @@ private:
   TextPlace place_;
 };
 
+/// What numbers and words are made of.
+bool belongs_to_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.'; }
+
 /// Where the token begins whose last character stands before `end`.
 std::size_t token_start(std::string_view text, std::size_t end) {
   std::size_t start = end - 1;
@@ -82,8 +84,7 @@ std::size_t token_start(std::string_view text, std::size_t end) {
     while (start != 0 && is_escaped(start));
     return start;
   }
-  const auto belongs = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("+-.", c) != nullptr; };
-  while (start > 0 && belongs(text[start]) && belongs(text[start - 1])) --start;
+  while (start > 0 && belongs_to_word(text[start]) && belongs_to_word(text[start - 1])) --start;
   return start;
 }
 
@@ -100,9 +101,9 @@ public:
 
   bool null() override { return literal("", ManifestOption::Kind::off); }
   bool boolean(bool value) override { return literal("", value ? ManifestOption::Kind::on : ManifestOption::Kind::off); }
-  bool number_integer(number_integer_t value) override { return literal(std::to_string(value), ManifestOption::Kind::text); }
-  bool number_unsigned(number_unsigned_t value) override { return literal(std::to_string(value), ManifestOption::Kind::text); }
-  bool number_float(number_float_t, const string_t& spelled) override { return literal(spelled, ManifestOption::Kind::text); }
+  bool number_integer(number_integer_t value) override { return number(std::to_string(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return number(std::to_string(value)); }
+  bool number_float(number_float_t, const string_t& spelled) override { return number(spelled); }
   bool binary(binary_t&) override { return false; }
 
   bool string(string_t& value) override {
@@ -192,10 +193,18 @@ private:
 
   std::set<std::string>& keys(State state) { return state == State::root ? root_keys_ : keys_; }
 
-  /// The place of the token just read. The parser reads one character beyond a number.
+  /// The parser has read one character beyond a number.
+  bool number(const std::string& spelled) {
+    after_number_ = true;
+    literal(spelled, ManifestOption::Kind::text);
+    after_number_ = false;
+    return true;
+  }
+
+  /// The place of the token just read.
   TextPlace here() {
     std::size_t end = std::max<std::size_t>(static_cast<std::size_t>(at_ - text_.data()), 1);
-    while (end > 1 && std::strchr(",]} \t\r\n", text_[end - 1]) != nullptr) --end;
+    if (after_number_ && end > 1 && !belongs_to_word(text_[end - 1])) --end;
     return places_.find(token_start(text_, end));
   }
 
@@ -242,6 +251,7 @@ private:
   Manifest manifest_;
   State state_ = State::start, outside_ = State::start;
   std::string key_, numbers_;
+  bool after_number_ = false;
   TextPlace key_place_;
   std::set<std::string> root_keys_, keys_;
 };

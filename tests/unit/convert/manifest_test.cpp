@@ -76,6 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
     Shapes, ManifestRefuses,
     testing::Values(BadManifest{"{}", ": has no \"scenes\""}, BadManifest{"[]", ":1:1: manifest: must not be a list"},
                     BadManifest{"17", ":1:1: manifest: must be an object with \"scenes\""},
+                    BadManifest{"17\"", ":1:1: manifest: must be an object with \"scenes\""}, // a quote where none was opened
                     BadManifest{"{\"scene\": []}", ":1:2: scene: no such key; there are \"defaults\" and \"scenes\""},
                     BadManifest{"{\"scenes\": {}}", ":1:2: scenes: must be a list"},
                     BadManifest{"{\"scenes\": 3}", ":1:2: scenes: must be a list"},
