@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config libxxhash-dev
   libopenmesh-dev libcgal-dev libglm-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev
   libhwy-dev libcairo2-dev fonts-dejavu-core libegl-dev libgl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri
-  libcli11-dev nlohmann-json3-dev libpng-dev libturbojpeg0-dev libwebp-dev
+  libcli11-dev nlohmann-json3-dev libopenexr-dev libpng-dev libturbojpeg0-dev libwebp-dev
   libgtest-dev libgmock-dev libmuparser-dev libmpfr-dev libgmp-dev doxygen
 )
 missing=()

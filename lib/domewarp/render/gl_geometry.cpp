@@ -128,6 +128,18 @@ void append_triangles(GlGeometry& geometry, const Part& part, std::size_t base, 
   }
 }
 
+void append_strokes(GlGeometry& geometry, const Part& part, std::size_t base) {
+  const std::size_t corners = part.primitive->topology == Topology::lines ? 2 : 1, first = geometry.strokes.size();
+  const std::vector<std::uint32_t>& indices = part.primitive->indices;
+  for (std::size_t i = 0; i + corners <= indices.size(); i += corners) {
+    bool finite = true;
+    for (std::size_t k = 0; k < corners; ++k) finite = finite && is_finite(geometry.vertices[base + indices[i + k]]);
+    for (std::size_t k = 0; finite && k < corners; ++k)
+      geometry.strokes.push_back(static_cast<std::uint32_t>(base + indices[i + k]));
+  }
+  geometry.stroke_batches.push_back({part.look, part.primitive->topology, first, geometry.strokes.size() - first});
+}
+
 } // namespace
 
 GlGeometry make_gl_geometry(const Parts& parts, const Mat4& camera_from_world) {
@@ -138,6 +150,7 @@ GlGeometry make_gl_geometry(const Parts& parts, const Mat4& camera_from_world) {
     append_triangles(geometry, part, base, blended);
   }
   append_blended(geometry, blended);
+  for (const Part& part : parts.strokes) append_strokes(geometry, part, append_vertices(geometry, part, camera_from_world));
   return geometry;
 }
 

@@ -32,13 +32,22 @@ struct GlBatch {
   std::size_t first = 0, count = 0; ///< triangles
 };
 
-/// Everything that is drawn, in drawing order: first opaque and masked triangles in the scene's order, then the blended
-/// ones, farthest first.
+/// Points or lines of one primitive.
+struct GlStrokes {
+  const Look* look = nullptr;
+  Topology topology = Topology::lines;
+  std::size_t first = 0, count = 0; ///< in GlGeometry::strokes
+};
+
+/// Everything that is drawn, in drawing order: first opaque and masked triangles in the scene's order, then points and
+/// lines, then the blended triangles, farthest first.
 struct GlGeometry {
   std::vector<GlVertex> vertices;
   std::vector<GlTriangle> triangles;
   std::vector<GlIds> ids; ///< by triangle
   std::vector<GlBatch> opaque, blended;
+  std::vector<std::uint32_t> strokes; ///< vertices, one per point and two per line
+  std::vector<GlStrokes> stroke_batches;
 };
 
 /// @param camera_from_world turns world positions into camera space; done in double precision, rounded once

@@ -9,14 +9,29 @@ layout(location = 1) in vec4 source;
 layout(location = 2) in vec3 normal;
 layout(location = 3) in vec4 colour;
 layout(location = 4) in vec4 uv;
-uniform mat4 projection;
+uniform mat4 projection;  // camera space to the clip space of the picture
+uniform vec2 picture;     // its size, samples
+uniform vec4 tile;        // left, bottom, width, height of what is drawn now, samples
+uniform float subpixels;  // per sample, of the driver's grid
 out vec4 point_source;
 out vec3 point_normal;
 out vec4 point_colour;
 out vec4 point_uv;
 
+// A driver rounds vertices to its grid after it has added the tile's corner in float32, so that a vertex may fall on
+// different points in two tiles. Rounded in the picture before, it cannot.
+vec2 on_grid(vec2 ndc) {
+  return round((0.5 * ndc + 0.5) * picture * subpixels) / subpixels;
+}
+
 void main() {
-  gl_Position = projection * vec4(position, 1.0);
+  vec4 clip = projection * vec4(position, 1.0);
+  vec2 at = clip.xy / clip.w;
+  if (clip.w > 0.0 && all(lessThan(abs(at), vec2(8.0))))
+    clip.xy = (2.0 * (on_grid(at) - tile.xy) / tile.zw - 1.0) * clip.w;
+  else
+    clip.xy = (clip.xy * picture + (picture - 2.0 * tile.xy - tile.zw) * clip.w) / tile.zw;
+  gl_Position = clip;
   point_source = source;
   point_normal = normal;
   point_colour = colour;
@@ -33,6 +48,8 @@ in vec4 point_uv;
 layout(location = 0) out vec4 out_colour;
 layout(location = 1) out vec4 out_source;
 layout(location = 2) out uvec2 out_ids;
+layout(location = 3) out vec4 out_normal;
+layout(location = 4) out vec2 out_uv;
 
 const int wrap_repeat = 0, wrap_clamp = 1, wrap_mirror = 2;
 const int alpha_opaque = 0, alpha_mask = 1, alpha_blend = 2;
@@ -44,8 +61,20 @@ uniform int alpha_mode;
 uniform float alpha_cutoff;
 uniform bool unlit;
 uniform int first_triangle;        // of this draw, in ids
+uniform int light_count;           // -1: one light at the eye
+uniform float exposure;
+uniform bool parallel_view;        // without source positions, all is seen along -z
 
 layout(std430, binding = 0) readonly buffer Triangles { uvec2 ids[]; };
+
+struct Light {
+  vec4 position;   // w: kind
+  vec4 direction;  // w: range
+  vec4 strength;   // w: cone scale
+  vec4 cone;       // x: cone offset
+};
+const int light_directional = 0, light_point = 1, light_spot = 2;
+layout(std430, binding = 1) readonly buffer Lights { Light lights[]; };
 
 float reduce(float u, int wrap) {
   if (isnan(u) || isinf(u)) return 0.0;
@@ -78,24 +107,52 @@ vec4 read_texture(sampler2D map, vec2 uv, ivec4 use) {
   return mix(top, bottom, part.y);
 }
 
-float light_factor(vec3 n, vec3 p) {
+float head_light(vec3 n, vec3 p) {
   float scale = length(n) * length(p);
   if (!(scale > 0.0)) return 1.0;
   return 0.35 + 0.65 * min(1.0, abs(dot(n, p)) / scale);
 }
 
+vec3 diffuse(Light light, vec3 n, vec3 p) {
+  int kind = int(light.position.w);
+  if (kind == light_directional) return max(0.0, -dot(n, light.direction.xyz)) * light.strength.rgb;
+  vec3 path = light.position.xyz - p;
+  float far = length(path);
+  if (!(far > 0.0)) return vec3(0.0);
+  vec3 towards = path / far;
+  float strength = 1.0 / (far * far);
+  float range = light.direction.w;
+  if (range > 0.0) strength *= clamp(1.0 - pow(far / range, 4.0), 0.0, 1.0);
+  float edge = clamp(-dot(light.direction.xyz, towards) * light.strength.w + light.cone.x, 0.0, 1.0);
+  return max(0.0, dot(n, towards)) * strength * edge * edge * light.strength.rgb;
+}
+
+vec3 light_at(vec3 n, vec3 seen_n, vec3 p, vec3 view) {
+  if (unlit) return vec3(1.0);
+  if (light_count < 0) return vec3(head_light(n, view));
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < light_count; ++i) sum += diffuse(lights[i], seen_n, p);
+  return exposure / 3.14159265358979 * sum;
+}
+
 void main() {
-  vec3 across = dFdx(point_source.xyz), along = dFdy(point_source.xyz);
+  vec3 face = cross(dFdx(point_source.xyz), dFdy(point_source.xyz));
+  vec3 view = parallel_view && point_source.w == 0.0 ? vec3(0.0, 0.0, -1.0) : point_source.xyz;
   vec4 albedo = point_colour * read_texture(base_map, point_uv.xy, base_use);
   if (alpha_mode == alpha_mask && !(albedo.a >= alpha_cutoff)) discard;
   if (alpha_mode == alpha_blend && !(albedo.a >= 1.0 / 510.0)) discard;
-  vec3 n = point_normal == vec3(0.0) ? cross(across, along) : point_normal;
-  vec3 colour = (unlit ? 1.0 : light_factor(n, point_source.xyz)) * albedo.rgb;
+  if (dot(face, view) > 0.0) face = -face;
+  vec3 n = point_normal == vec3(0.0) ? face : point_normal;
+  float size = length(n);
+  vec3 seen_n = size > 0.0 ? (dot(n, face) < 0.0 ? -n : n) / size : vec3(0.0);
+  vec3 colour = light_at(n, seen_n, point_source.xyz, view) * albedo.rgb;
   if (emissive != vec3(0.0)) colour += emissive * read_texture(glow_map, point_uv.zw, glow_use).rgb;
   float alpha = alpha_mode == alpha_blend ? min(albedo.a, 1.0) : 1.0;
   out_colour = vec4(colour * alpha, alpha);
   out_source = point_source;
   out_ids = ids[first_triangle + gl_PrimitiveID];
+  out_normal = vec4(seen_n, 1.0);
+  out_uv = point_uv.xy;
 }
 )";
 

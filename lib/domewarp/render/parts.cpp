@@ -123,15 +123,15 @@ void check_indices(const Primitive& primitive) {
                                         std::to_string(primitive.positions.size()) + " vertices");
 }
 
-/// Calls visit(instance index, instance, primitive, triangles of the instance before it) for all that is drawn.
+/// Calls visit(instance index, instance, primitive, triangles of the instance before it) for all that is drawn, points
+/// and lines included.
 template <typename Visit>
 void for_each_primitive(const Scene& scene, Visit&& visit) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     std::uint32_t first = 0;
     for (const Primitive& primitive : entry(scene.meshes, scene.instances[i].mesh, "mesh").primitives) {
-      if (primitive.topology != Topology::triangles) continue;
       visit(i, scene.instances[i], primitive, first);
-      first += static_cast<std::uint32_t>(primitive.indices.size() / 3);
+      if (primitive.topology == Topology::triangles) first += static_cast<std::uint32_t>(primitive.indices.size() / 3);
     }
   }
 }
@@ -163,7 +163,7 @@ Parts prepare_parts(const Scene& scene) {
         part.world = instance.world;
         part.object = static_cast<std::uint32_t>(i + 1);
         part.first_triangle = first;
-        result.parts.push_back(part);
+        (primitive.topology == Topology::triangles ? result.parts : result.strokes).push_back(part);
       });
   return result;
 }

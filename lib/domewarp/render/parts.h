@@ -32,7 +32,7 @@ struct Look {
   bool double_sided = false, unlit = false;
 };
 
-/// One triangle primitive of one instance: what both renderers draw, in the same order. Its front is where the
+/// One primitive of one instance: what both renderers draw, in the same order. The front of triangles is where the
 /// triangles are counter-clockwise in world space, whatever the instance's matrix (read_scene sees to that).
 struct Part {
   const Primitive* primitive = nullptr;
@@ -51,7 +51,8 @@ struct Part {
 struct Parts {
   std::vector<Pixels> images; ///< decoded, by index of Scene::images; empty where no drawn material reads it
   std::vector<Look> looks;    ///< looks[0] is glTF's default material, looks[i + 1] material i
-  std::vector<Part> parts;
+  std::vector<Part> parts;    ///< triangles
+  std::vector<Part> strokes;  ///< points and lines
   std::vector<std::string> warnings; ///< one sentence for each image that is missing or broken and drawn white
 };
 

@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
+#include <memory>
 #include <numbers>
 
-#define GL_GLEXT_PROTOTYPES
-#include <GL/glcorearb.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/render/bands.h"
 #include "domewarp/render/gl_context.h"
+#include "domewarp/render/gl_draw.h"
 #include "domewarp/render/gl_geometry.h"
-#include "domewarp/render/gl_shaders.h"
 #include "domewarp/render/parts.h"
 #include "domewarp/render/shading.h"
 
@@ -24,34 +23,16 @@ namespace domewarp {
 
 namespace {
 
-/// Triangles whose ids are bound at once: 8 MiB, below every driver's limit for a storage buffer.
-constexpr std::size_t id_block = std::size_t{1} << 20;
-
-struct Tile {
-  int left = 0, top = 0, width = 0, height = 0;
-};
-
-/// Colour, source position, ids and depth of a tile.
-struct Target {
-  GlObject framebuffer = make_framebuffer();
-  GlObject colour = make_texture(), source = make_texture(), ids = make_texture(), depth = make_texture();
-};
-
-/// A scene on the graphics device.
-struct Drawing {
-  GlObject program;
-  GlObject vertices = make_buffer(), triangles = make_buffer(), ids = make_buffer();
-  GlObject array = make_vertex_array();
-  std::vector<GlObject> textures; ///< by image, no name where unused
-};
+constexpr int most_supersamples = 16;
+constexpr int largest_target = 4096; ///< samples across: 16 million of 20 to 64 bytes each
 
 [[noreturn]] void refuse_camera(const Camera& camera, const std::string& reason) {
   throw Error(ErrorCode::input, "camera " + (camera.name.empty() ? std::string("0") : camera.name) + ": " + reason);
 }
 
-const Camera& checked_camera(const Scene& scene) {
-  if (scene.cameras.empty()) throw Error(ErrorCode::input, "scene: has no camera to draw through");
-  const Camera& camera = scene.cameras.front();
+const Camera& checked_camera(const Scene& scene, std::size_t index) {
+  if (index >= scene.cameras.size()) throw Error(ErrorCode::input, "scene: has no camera to draw through");
+  const Camera& camera = scene.cameras[index];
   const double determinant = glm::determinant(camera.world);
   if (!(std::abs(determinant) > 0) || !std::isfinite(determinant))
     refuse_camera(camera, "its matrix cannot be inverted");
@@ -75,282 +56,149 @@ Vec2 depth_row(const Camera& camera) {
   return {near / (far - near), near * far / (far - near)};
 }
 
-/// Camera space to the clip space of one tile.
-glm::mat4 tile_projection(const Camera& camera, const Raster& raster, const Tile& tile) {
+/// Camera space to the clip space of the picture.
+glm::mat4 projection_of(const Camera& camera, const Raster& raster) {
   const double half_height = camera.perspective ? std::tan(camera.yfov / 2) : camera.ymag;
-  const double across = double(raster.width) / tile.width, up = double(raster.height) / tile.height;
-  const double x = (2.0 * tile.left + tile.width) / raster.width - 1;
-  const double y = 1 - (2.0 * tile.top + tile.height) / raster.height;
   const Vec2 depth = depth_row(camera);
   Mat4 m(0);
-  m[0][0] = across / (half_height * aspect(raster));
-  m[1][1] = up / half_height;
-  // clip.xy = (xy - centre of the tile * w) * tiles per picture, with w = -z or 1.
-  const int w_column = camera.perspective ? 2 : 3;
-  const double w_factor = camera.perspective ? -1 : 1;
-  m[w_column][0] = -x * across * w_factor;
-  m[w_column][1] = -y * up * w_factor;
-  m[w_column][3] = w_factor;
+  m[0][0] = 1 / (half_height * aspect(raster));
+  m[1][1] = 1 / half_height;
+  m[camera.perspective ? 2 : 3][3] = camera.perspective ? -1 : 1;
   m[2][2] += depth.x;
   m[3][2] += depth.y;
   return glm::mat4(m);
 }
 
-template <typename T>
-void upload(const GlObject& buffer, const std::vector<T>& values) {
-  const std::size_t bytes = std::max<std::size_t>(values.size() * sizeof(T), 4);
-  glNamedBufferStorage(buffer.name(), static_cast<GLsizeiptr>(bytes), values.empty() ? nullptr : values.data(), 0);
-}
-
-void describe_vertices(const Drawing& drawing) {
-  const GLuint array = drawing.array.name();
-  glVertexArrayVertexBuffer(array, 0, drawing.vertices.name(), 0, sizeof(GlVertex));
-  glVertexArrayElementBuffer(array, drawing.triangles.name());
-  const struct {
-    GLint components;
-    std::size_t offset;
-  } inputs[] = {{3, offsetof(GlVertex, position)},
-                {4, offsetof(GlVertex, source)},
-                {3, offsetof(GlVertex, normal)},
-                {4, offsetof(GlVertex, colour)},
-                {4, offsetof(GlVertex, uv)}};
-  for (GLuint i = 0; i < 5; ++i) {
-    glEnableVertexArrayAttrib(array, i);
-    glVertexArrayAttribFormat(array, i, inputs[i].components, GL_FLOAT, GL_FALSE,
-                              static_cast<GLuint>(inputs[i].offset));
-    glVertexArrayAttribBinding(array, i, 0);
-  }
-}
-
-GlObject upload_texture(const Pixels& pixels, std::size_t index) {
-  if (pixels.rgba.empty()) return {};
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-  if (std::max(pixels.width, pixels.height) > limit)
-    throw Error(ErrorCode::output, "OpenGL: image " + std::to_string(index) + " of " + std::to_string(pixels.width) +
-                                       " x " + std::to_string(pixels.height) + " pixels exceeds the driver's " +
-                                       std::to_string(limit));
-  GlObject texture = make_texture();
-  glTextureStorage2D(texture.name(), 1, GL_SRGB8_ALPHA8, pixels.width, pixels.height);
-  glTextureSubImage2D(texture.name(), 0, 0, 0, pixels.width, pixels.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                      pixels.rgba.data());
-  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  return texture;
-}
-
-Drawing make_drawing(const Parts& parts, const GlGeometry& geometry) {
-  Drawing drawing;
-  drawing.program = make_program(vertex_shader_source, fragment_shader_source);
-  upload(drawing.vertices, geometry.vertices);
-  upload(drawing.triangles, geometry.triangles);
-  upload(drawing.ids, geometry.ids);
-  describe_vertices(drawing);
-  for (std::size_t i = 0; i < parts.images.size(); ++i) drawing.textures.push_back(upload_texture(parts.images[i], i));
-  check_gl("copying the scene to the graphics device");
-  return drawing;
-}
-
-Target make_target(int size_x, int size_y) {
-  Target target;
-  const struct {
-    const GlObject& texture;
-    GLenum format, attachment;
-  } layers[] = {{target.colour, GL_RGBA32F, GL_COLOR_ATTACHMENT0},
-                {target.source, GL_RGBA32F, GL_COLOR_ATTACHMENT1},
-                {target.ids, GL_RG32UI, GL_COLOR_ATTACHMENT2},
-                {target.depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT}};
-  const GLuint framebuffer = target.framebuffer.name();
-  for (const auto& layer : layers) {
-    glTextureStorage2D(layer.texture.name(), 1, layer.format, size_x, size_y);
-    glNamedFramebufferTexture(framebuffer, layer.attachment, layer.texture.name(), 0);
-  }
-  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
-  glNamedFramebufferDrawBuffers(framebuffer, 3, outputs);
-  check_gl("making a target of " + std::to_string(size_x) + " x " + std::to_string(size_y) + " pixels");
-  if (glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw Error(ErrorCode::output, "OpenGL: the driver cannot draw into float and integer targets");
-  return target;
-}
-
-void clear_target(const Target& target) {
-  const GLuint framebuffer = target.framebuffer.name();
-  const GLfloat zero[4] = {};
-  const GLuint no_ids[4] = {};
-  glDepthMask(GL_TRUE);
-  for (GLuint i = 0; i < 3; ++i) glColorMaski(i, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, zero);
-  glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, zero);
-  glClearNamedFramebufferuiv(framebuffer, GL_COLOR, 2, no_ids);
-  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, zero);
-}
-
-class Painter {
- public:
-  Painter(const Parts& parts, const Drawing& drawing, bool unlit) : parts_(parts), drawing_(drawing), unlit_(unlit) {
-    glUseProgram(drawing.program.name());
-    glBindVertexArray(drawing.array.name());
-    set("base_map", 0);
-    set("glow_map", 1);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  }
-
-  /// A camera that mirrors turns all triangles round in the picture.
-  void set_mirrored(bool mirrored) const { glFrontFace(mirrored ? GL_CW : GL_CCW); }
-
-  void set_projection(const glm::mat4& m) const { glUniformMatrix4fv(location("projection"), 1, GL_FALSE, &m[0][0]); }
-
-  void draw(const std::vector<GlBatch>& batches) const {
-    for (const GlBatch& batch : batches) {
-      apply(*batch.look);
-      for (std::size_t done = 0; done < batch.count;) done += draw_block(batch.first + done, batch.count - done);
-    }
-  }
-
- private:
-  const Parts& parts_;
-  const Drawing& drawing_;
-  bool unlit_;
-
-  GLint location(const char* name) const { return glGetUniformLocation(drawing_.program.name(), name); }
-  void set(const char* name, int value) const { glUniform1i(location(name), value); }
-
-  void apply(const Look& look) const {
-    if (look.double_sided)
-      glDisable(GL_CULL_FACE);
-    else
-      glEnable(GL_CULL_FACE);
-    set("alpha_mode", static_cast<int>(look.alpha_mode));
-    glUniform1f(location("alpha_cutoff"), static_cast<float>(look.alpha_cutoff));
-    set("unlit", unlit_ || look.unlit);
-    const glm::vec3 emissive(look.emissive);
-    glUniform3fv(location("emissive"), 1, &emissive[0]);
-    apply(look.base, "base_use", 0);
-    apply(look.glow, "glow_use", 1);
-  }
-
-  void apply(const TextureUse& use, const char* uniform, GLuint unit) const {
-    glUniform4i(location(uniform), use.pixels != nullptr, static_cast<int>(use.wrap_s), static_cast<int>(use.wrap_t),
-                use.nearest);
-    if (use.pixels) glBindTextureUnit(unit, drawing_.textures[std::size_t(use.pixels - parts_.images.data())].name());
-  }
-
-  /// Draws up to `most` triangles from `first`, as far as one block of ids reaches.
-  std::size_t draw_block(std::size_t first, std::size_t most) const {
-    const std::size_t block = first / id_block * id_block;
-    const std::size_t count = std::min(most, block + id_block - first);
-    const std::size_t bytes = (first + count - block) * sizeof(GlIds);
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, drawing_.ids.name(), static_cast<GLintptr>(block * sizeof(GlIds)),
-                      static_cast<GLsizeiptr>(bytes));
-    set("first_triangle", static_cast<int>(first - block));
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(first * sizeof(GlTriangle)));
-    return count;
-  }
+/// What is drawn, and the device's room for one tile of it.
+struct Job {
+  const Raster& raster;
+  const RasterOptions& options;
+  const GlDrawing& drawing;
+  glm::mat4 projection;
+  int tile_width, tile_height; ///< pixels
+  GlTarget& colours;           ///< of supersample^2 samples per pixel
+  GlTarget* centres;           ///< the other layers, when they are another picture than the colours
 };
 
-void mask_outputs(bool colour, bool others) {
-  glColorMaski(0, colour, colour, colour, colour);
-  for (GLuint i = 1; i < 3; ++i) glColorMaski(i, others, others, others, others);
-  glDepthMask(others);
-}
-
-/// Blended triangles are drawn twice: all their colours, then ids, positions and depth of the nearest. In one pass
-/// either the depth written by a near triangle hides colours drawn later, or the ids are those of whatever came last.
-void draw_all(const Painter& painter, const GlGeometry& geometry) {
-  painter.draw(geometry.opaque);
-  if (geometry.blended.empty()) return;
-  glEnablei(GL_BLEND, 0);
-  mask_outputs(true, false);
-  painter.draw(geometry.blended);
-  glDisablei(GL_BLEND, 0);
-  mask_outputs(false, true);
-  painter.draw(geometry.blended);
-}
-
-/// Room for a tile on its way back, lowest row first.
-struct Readback {
-  std::vector<Vec4f> colour, source;
-  std::vector<GlIds> ids;
-};
-
-void read_target(const Tile& tile, Readback& data) {
-  const std::size_t count = std::size_t(tile.width) * std::size_t(tile.height);
-  data.colour.resize(count);
-  data.source.resize(count);
-  data.ids.resize(count);
-  glReadBuffer(GL_COLOR_ATTACHMENT0);
-  glReadPixels(0, 0, tile.width, tile.height, GL_RGBA, GL_FLOAT, data.colour.data());
-  glReadBuffer(GL_COLOR_ATTACHMENT1);
-  glReadPixels(0, 0, tile.width, tile.height, GL_RGBA, GL_FLOAT, data.source.data());
-  glReadBuffer(GL_COLOR_ATTACHMENT2);
-  glReadPixels(0, 0, tile.width, tile.height, GL_RG_INTEGER, GL_UNSIGNED_INT, data.ids.data());
-  check_gl("drawing");
-}
-
-void store_pixel(Frame& frame, std::size_t pixel, const Readback& data, std::size_t i, const RasterOptions& options) {
-  const auto colour = resolve_pixel(Vec4(data.colour[i]), options.background);
+void store_colour(Frame& frame, std::size_t pixel, const Vec4& light, const RasterOptions& options) {
+  const auto colour = resolve_pixel(light, options.background);
   std::copy(colour.begin(), colour.end(), &frame.rgba[4 * pixel]);
+  if (!frame.light.empty()) frame.light[pixel] = Vec4f(over_background(light, options.background));
+}
+
+void store_layers(Frame& frame, std::size_t pixel, const GlTarget& data, std::size_t i) {
   frame.object[pixel] = data.ids[i].object;
   frame.triangle[pixel] = data.ids[i].triangle;
-  if (!data.ids[i].object || data.source[i].w < 0.5f) return;
-  frame.position[pixel] = Vec3f(data.source[i]);
-  frame.depth[pixel] = static_cast<float>(glm::length(Vec3(data.source[i])));
+  if (!data.ids[i].object) return;
+  if (data.source[i].w >= 0.5f) {
+    frame.position[pixel] = Vec3f(data.source[i]);
+    frame.depth[pixel] = static_cast<float>(glm::length(Vec3(data.source[i])));
+  }
+  if (frame.normal.empty()) return;
+  frame.normal[pixel] = Vec3f(data.normal[i]);
+  frame.uv[pixel] = data.uv[i];
 }
 
-void store_tile(Frame& frame, const Tile& tile, const Readback& data, const RasterOptions& options) {
+/// Calls store(pixel of the frame, column and row in the tile, from below) for all of a tile, in parallel.
+template <typename Store>
+void for_each_pixel(const Frame& frame, int top, const Tile& tile, Store&& store) {
   parallel_each(std::size_t(tile.height), 16, [&](std::size_t row) {
-    const std::size_t from = (std::size_t(tile.height) - 1 - row) * std::size_t(tile.width);
-    const std::size_t to = (std::size_t(tile.top) + row) * std::size_t(frame.width) + std::size_t(tile.left);
-    for (std::size_t i = 0; i < std::size_t(tile.width); ++i) store_pixel(frame, to + i, data, from + i, options);
+    const std::size_t from_below = std::size_t(tile.height) - 1 - row;
+    const std::size_t first = (std::size_t(tile.top - top) + row) * std::size_t(frame.width) + std::size_t(tile.left);
+    for (std::size_t i = 0; i < std::size_t(tile.width); ++i) store(first + i, i, from_below);
   });
 }
 
-/// What the driver can draw at once, and no more than asked for.
-int tile_size(const RasterOptions& options) {
-  GLint texture = 0, viewport[2] = {};
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
-  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
-  return std::clamp(std::min({options.tile, texture, viewport[0], viewport[1]}), 1, 1 << 14);
+/// Mean of the samples of one pixel.
+Vec4 mean(const std::vector<Vec4f>& colour, std::size_t stride, std::size_t column, std::size_t row, int supersample) {
+  const std::size_t n = std::size_t(supersample);
+  Vec4 sum(0);
+  for (std::size_t y = row * n; y < (row + 1) * n; ++y)
+    for (std::size_t x = column * n; x < (column + 1) * n; ++x) sum += Vec4(colour[y * stride + x]);
+  return sum / double(n * n);
 }
 
-std::vector<Tile> cut(const Raster& raster, int size) {
-  std::vector<Tile> tiles;
-  for (int top = 0; top < raster.height; top += size)
-    for (int left = 0; left < raster.width; left += size)
-      tiles.push_back({left, top, std::min(size, raster.width - left), std::min(size, raster.height - top)});
-  return tiles;
+/// Draws a tile into a frame whose first row is row `top` of the picture.
+void draw_tile(const Job& job, const Tile& tile, Frame& frame, int top) {
+  const int n = job.options.supersample;
+  const auto draw = [&](GlTarget& target, int scale) {
+    target.bind();
+    target.clear();
+    job.drawing.draw(job.projection, scale * job.raster.width, scale * job.raster.height,
+                     {scale * tile.left, scale * tile.top, scale * tile.width, scale * tile.height});
+    target.read(scale * tile.width, scale * tile.height);
+  };
+  draw(job.colours, n);
+  const std::size_t stride = std::size_t(n * tile.width), width = std::size_t(tile.width);
+  for_each_pixel(frame, top, tile, [&](std::size_t pixel, std::size_t x, std::size_t y) {
+    store_colour(frame, pixel, mean(job.colours.colour, stride, x, y, n), job.options);
+  });
+  if (frame.object.empty()) return;
+  if (job.centres) draw(*job.centres, 1);
+  const GlTarget& layers = job.centres ? *job.centres : job.colours;
+  for_each_pixel(frame, top, tile, [&](std::size_t pixel, std::size_t x, std::size_t y) {
+    store_layers(frame, pixel, layers, y * width + x);
+  });
+}
+
+/// Fills a frame whose first row is row `top` of the picture.
+void draw_rows(const Job& job, Frame& frame, int top) {
+  for (int y = top; y < top + frame.height; y += job.tile_height) {
+    const int height = std::min(job.tile_height, top + frame.height - y);
+    for (int x = 0; x < frame.width; x += job.tile_width)
+      draw_tile(job, {x, y, std::min(job.tile_width, frame.width - x), height}, frame, top);
+    tell(job.options.progress, "draw", double(y + height) / job.raster.height);
+  }
+}
+
+void check(const Raster& raster, const RasterOptions& options) {
+  if (options.supersample < 1 || options.supersample > most_supersamples)
+    throw Error(ErrorCode::usage, "--supersample: must be from 1 to " + std::to_string(most_supersamples) + ", got " +
+                                      std::to_string(options.supersample));
+  if (raster.width < 1 || raster.height < 1)
+    throw Error(ErrorCode::usage, "--size " + std::to_string(raster.width) + "x" + std::to_string(raster.height) +
+                                      ": needs positive sizes");
+}
+
+/// Draws the picture in bands of at most `rows` and hands on every one.
+void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& options, int rows,
+                const std::function<void(Frame&&, int)>& hand_on) {
+  check(raster, options);
+  const Camera& camera = checked_camera(scene, options.camera);
+  const Parts parts = prepare_parts(scene);
+  const GlGeometry geometry = make_gl_geometry(parts, glm::inverse(camera.world));
+  const GlContext context;
+  const GlScenery scenery{options.unlit, options.lights ? &*options.lights : nullptr, std::exp2(options.exposure),
+                          !camera.perspective, glm::determinant(camera.world) < 0};
+  const GlDrawing drawing(parts, geometry, scenery);
+  const int n = options.supersample;
+  const int size = std::clamp(options.tile, 1, std::min(largest_tile(), largest_target) / n);
+  const int width = std::min(size, raster.width), height = std::min({size, raster.height, rows});
+  const bool two_pictures = n > 1 && options.layers != Layers::colours;
+  GlTarget colours(n * width, n * height, two_pictures ? Layers::colours : options.layers);
+  std::unique_ptr<GlTarget> centres;
+  if (two_pictures) centres = std::make_unique<GlTarget>(width, height, options.layers);
+  const Job job{raster, options, drawing, projection_of(camera, raster), width, height, colours, centres.get()};
+  for (int top = 0; top < raster.height; top += rows) {
+    Frame frame = make_frame(raster.width, std::min(rows, raster.height - top), options.layers);
+    frame.renderer = context.driver();
+    frame.subpixel_bits = subpixel_bits();
+    frame.warnings = parts.warnings;
+    draw_rows(job, frame, top);
+    hand_on(std::move(frame), top);
+  }
 }
 
 } // namespace
 
 Frame rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options) {
-  Frame frame = make_frame(raster.width, raster.height);
-  const Camera& camera = checked_camera(scene);
-  const Parts parts = prepare_parts(scene);
-  const GlGeometry geometry = make_gl_geometry(parts, glm::inverse(camera.world));
-  const GlContext context;
-  frame.renderer = context.driver();
-  frame.warnings = parts.warnings;
-  const Drawing drawing = make_drawing(parts, geometry);
-  const int size = tile_size(options);
-  const Target target = make_target(std::min(size, raster.width), std::min(size, raster.height));
-  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
-  const Painter painter(parts, drawing, options.unlit);
-  painter.set_mirrored(glm::determinant(camera.world) < 0);
-  Readback data;
-  for (const Tile& tile : cut(raster, size)) {
-    glViewport(0, 0, tile.width, tile.height);
-    clear_target(target);
-    painter.set_projection(tile_projection(camera, raster, tile));
-    draw_all(painter, geometry);
-    read_target(tile, data);
-    store_tile(frame, tile, data, options);
-  }
-  return frame;
+  Frame whole = make_frame(raster.width, raster.height, Layers::colours);
+  draw_bands(scene, raster, options, raster.height, [&](Frame&& frame, int) { whole = std::move(frame); });
+  return whole;
+}
+
+void rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options, const FrameSink& sink) {
+  draw_bands(scene, raster, options, band_height(raster), [&](Frame&& frame, int top) { sink(frame, top); });
 }
 
 } // namespace domewarp

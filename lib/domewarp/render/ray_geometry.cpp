@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
+// Based on: Wald et al., Embree, 2014; signed volumes after Kensler and Shirley, Optimizing Ray-Triangle Intersection,
+// 2006.
+//
 // Embree works in float32 and its choice among hits near an edge depends on the instruction set. Here it gets triangles
 // that are slightly too large, so that it proposes every triangle the exact test could accept, and a filter function
 // decides in double precision. The filter keeps the best hit itself and leaves Embree's ray a little longer than
@@ -24,7 +27,8 @@ namespace domewarp {
 namespace {
 
 /// How far edges are moved outwards in their plane, relative to the largest coordinate. Embree's float32 edge test errs
-/// by about 2e-7 of that; a plane seen at a slant of 1:150 still leaves the margin needed.
+/// by about 2e-7 of that; a plane seen at a slant of 1:150 still leaves the margin needed. For rays that do not begin at
+/// the eye it covers origins up to a hundred times as far from the eye as the triangle.
 constexpr double inflation = 3e-5;
 constexpr double longest_mitre = 1000;
 
@@ -112,21 +116,29 @@ struct RayGeometry::Impl {
   void transform(const View& view);
   void number_triangles();
   void commit(const std::string& embree);
+  void attach_triangles();
   void fill(float* vertices, unsigned* indices) const;
-  void load(std::size_t part, std::uint32_t triangle, Vec3 (&v)[3]) const;
+  const Part& load(std::uint32_t primitive, Vec3 (&v)[3], std::uint32_t& triangle) const;
+  static void filter_hits(const RTCFilterFunctionNArguments* args);
+  static void filter_blocks(const RTCFilterFunctionNArguments* args);
 };
 
 namespace {
 
-/// What the filter needs to know about the ray under way. Embree hands back a pointer to the first member.
+/// What the filters need to know about the rays under way. Embree hands back a pointer to the first member; a ray's id
+/// is its index.
 struct RayQuery {
   RTCIntersectContext context;
   const void* geometry;
-  Vec3 direction;
-  double near;
-  const RayHit* previous;
-  bool found;
-  RayHit best;
+  const Ray* rays;
+  RayHit* best; ///< part null until something is found
+};
+
+struct BlockQuery {
+  RTCIntersectContext context;
+  const void* geometry;
+  Vec3 origin, direction;
+  double near, far;
 };
 
 /// Texture and vertex alpha at a hit.
@@ -166,17 +178,22 @@ void RayGeometry::Impl::number_triangles() {
   }
 }
 
-void RayGeometry::Impl::load(std::size_t part, std::uint32_t triangle, Vec3 (&v)[3]) const {
+/// Corners of one of Embree's primitives; `triangle` becomes its index in the part.
+const Part& RayGeometry::Impl::load(std::uint32_t primitive, Vec3 (&v)[3], std::uint32_t& triangle) const {
+  const std::uint32_t part = part_of[primitive];
+  triangle = primitive - first_of[part];
   const std::uint32_t* index = &parts->parts[part].primitive->indices[3 * std::size_t(triangle)];
   for (int k = 0; k < 3; ++k) v[k] = corners[part][index[k]];
+  return parts->parts[part];
 }
 
 void RayGeometry::Impl::fill(float* vertices, unsigned* indices) const {
   parallel_each(part_of.size(), 4096, [&](std::size_t i) {
     Vec3 v[3], inflated[3];
-    load(part_of[i], static_cast<std::uint32_t>(i) - first_of[part_of[i]], v);
-    const double reach = std::max({largest(v[0]), largest(v[1]), largest(v[2])});
-    inflate(v, inflation * reach, inflated);
+    std::uint32_t triangle = 0;
+    load(static_cast<std::uint32_t>(i), v, triangle);
+    const double farthest = std::max({largest(v[0]), largest(v[1]), largest(v[2])});
+    inflate(v, inflation * farthest, inflated);
     for (std::size_t k = 0; k < 9; ++k) vertices[9 * i + k] = static_cast<float>(scale * inflated[k / 3][int(k % 3)]);
     for (std::size_t k = 0; k < 3; ++k) indices[3 * i + k] = static_cast<unsigned>(3 * i + k);
   });
@@ -219,79 +236,131 @@ bool is_same_crossing(const RayHit& a, const RayHit& b) {
 }
 
 /// Judges one proposal of Embree's. @return the slack of an accepted hit, negative when it is refused.
-double judge(RayQuery& query, const Part& part, std::uint32_t triangle, const Vec3 (&v)[3]) {
+double judge(const Ray& ray, RayHit& best, const Part& part, std::uint32_t triangle, const Vec3 (&v)[3]) {
   Crossing crossing;
-  if (!intersect(query.direction, v[0], v[1], v[2], crossing) || crossing.distance < query.near) return -1;
+  if (!intersect(ray.direction, v[0], v[1], v[2], crossing) || crossing.distance < ray.near) return -1;
   if (!part.look->double_sided && crossing.det > 0) return -1;
   RayHit hit{crossing.distance, rounded_distance(crossing.distance), &part, triangle, {}};
   std::copy(crossing.weights, crossing.weights + 3, hit.weights);
-  if (query.found && !(rank(hit) < rank(query.best))) return -1;
-  if (query.previous && (!(rank(*query.previous) < rank(hit)) || is_same_crossing(*query.previous, hit))) return -1;
+  if (best.part && !(rank(hit) < rank(best))) return -1;
+  if (ray.previous && (!(rank(*ray.previous) < rank(hit)) || is_same_crossing(*ray.previous, hit))) return -1;
   if (!is_there(hit)) return -1;
-  query.best = hit;
-  query.found = true;
+  best = hit;
   return crossing.slack;
 }
 
+bool blocks(const BlockQuery& query, const Part& part, std::uint32_t triangle, Vec3 (&v)[3]) {
+  if (part.look->alpha_mode == AlphaMode::blend) return false;
+  for (Vec3& corner : v) corner -= query.origin;
+  Crossing crossing;
+  if (!intersect(query.direction, v[0], v[1], v[2], crossing)) return false;
+  if (crossing.distance < query.near || crossing.distance > query.far) return false;
+  RayHit hit{crossing.distance, 0, &part, triangle, {}};
+  std::copy(crossing.weights, crossing.weights + 3, hit.weights);
+  return is_there(hit);
+}
+
 } // namespace
+
+void RayGeometry::Impl::filter_hits(const RTCFilterFunctionNArguments* args) {
+  const RayQuery& query = *reinterpret_cast<RayQuery*>(args->context);
+  const Impl& impl = *static_cast<const Impl*>(query.geometry);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (args->valid[lane] != -1) continue;
+    Vec3 v[3];
+    std::uint32_t triangle = 0;
+    const Part& part = impl.load(RTCHitN_primID(args->hit, args->N, lane), v, triangle);
+    const unsigned index = RTCRayN_id(args->ray, args->N, lane);
+    const double slack = judge(query.rays[index], query.best[index], part, triangle, v);
+    if (slack < 0)
+      args->valid[lane] = 0;
+    else
+      RTCRayN_tfar(args->ray, args->N, lane) =
+          static_cast<float>(query.best[index].distance * impl.scale * (1 + slack));
+  }
+}
+
+void RayGeometry::Impl::filter_blocks(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  const BlockQuery& query = *reinterpret_cast<BlockQuery*>(args->context);
+  const Impl& impl = *static_cast<const Impl*>(query.geometry);
+  Vec3 v[3];
+  std::uint32_t triangle = 0;
+  const Part& part = impl.load(RTCHitN_primID(args->hit, args->N, 0), v, triangle);
+  if (!blocks(query, part, triangle, v)) args->valid[0] = 0;
+}
+
+void RayGeometry::Impl::attach_triangles() {
+  const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcAttachGeometry(scene.get(), mesh);
+  rtcReleaseGeometry(mesh);
+  void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * part_of.size());
+  void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part_of.size());
+  if (!vertices || !indices) fail(device.get(), "has no memory for the triangles");
+  fill(static_cast<float*>(vertices), static_cast<unsigned*>(indices));
+  rtcSetGeometryIntersectFilterFunction(mesh, filter_hits);
+  rtcSetGeometryOccludedFilterFunction(mesh, filter_blocks);
+  rtcCommitGeometry(mesh);
+}
 
 void RayGeometry::Impl::commit(const std::string& embree) {
   device.reset(rtcNewDevice(embree.empty() ? nullptr : embree.c_str()));
   if (!device) fail(nullptr, "cannot be started");
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  if (!part_of.empty()) {
-    const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcAttachGeometry(scene.get(), mesh);
-    rtcReleaseGeometry(mesh);
-    void* vertices =
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * part_of.size());
-    void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part_of.size());
-    if (!vertices || !indices) fail(device.get(), "has no memory for the triangles");
-    fill(static_cast<float*>(vertices), static_cast<unsigned*>(indices));
-    rtcSetGeometryIntersectFilterFunction(mesh, [](const RTCFilterFunctionNArguments* args) {
-      if (args->valid[0] != -1) return;
-      RayQuery& query = *reinterpret_cast<RayQuery*>(args->context);
-      const Impl& impl = *static_cast<const Impl*>(query.geometry);
-      const std::uint32_t primitive = RTCHitN_primID(args->hit, args->N, 0);
-      const std::uint32_t part = impl.part_of[primitive];
-      const std::uint32_t triangle = primitive - impl.first_of[part];
-      Vec3 v[3];
-      impl.load(part, triangle, v);
-      const double slack = judge(query, impl.parts->parts[part], triangle, v);
-      if (slack < 0)
-        args->valid[0] = 0;
-      else
-        RTCRayN_tfar(args->ray, args->N, 0) = static_cast<float>(query.best.distance * impl.scale * (1 + slack));
-    });
-    rtcCommitGeometry(mesh);
-  }
+  if (!part_of.empty()) attach_triangles();
   rtcCommitScene(scene.get());
   if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
     throw Error(ErrorCode::output,
                 "Embree: cannot build its tree (error " + std::to_string(static_cast<int>(error)) + ")");
 }
 
-bool RayGeometry::first_hit(const Vec3& direction, double near, const RayHit* previous, RayHit& hit) const {
+void RayGeometry::first_hits(std::span<const Ray> rays, RayHit* hits) const {
   RayQuery query{};
   rtcInitIntersectContext(&query.context);
   query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   query.geometry = impl_.get();
+  query.rays = rays.data();
+  query.best = hits;
+  alignas(64) RTCRayHit16 packet{};
+  alignas(64) int valid[packet_size] = {};
+  for (unsigned i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    hits[i].part = nullptr;
+    valid[i] = -1;
+    packet.ray.dir_x[i] = static_cast<float>(ray.direction.x);
+    packet.ray.dir_y[i] = static_cast<float>(ray.direction.y);
+    packet.ray.dir_z[i] = static_cast<float>(ray.direction.z);
+    // One hundredth is the largest slack, so no hit that float32 puts too near is lost.
+    const double nearest = std::max(ray.near, ray.previous ? ray.previous->distance : 0.0);
+    packet.ray.tnear[i] = static_cast<float>(0.99 * impl_->scale * nearest);
+    packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
+    packet.ray.mask[i] = ~0u;
+    packet.ray.id[i] = i;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect16(valid, impl_->scene.get(), &query.context, &packet);
+}
+
+bool RayGeometry::is_blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
+  BlockQuery query{};
+  rtcInitIntersectContext(&query.context);
+  query.geometry = impl_.get();
+  query.origin = origin;
   query.direction = direction;
   query.near = near;
-  query.previous = previous;
-  RTCRayHit ray{};
-  ray.ray.dir_x = static_cast<float>(direction.x);
-  ray.ray.dir_y = static_cast<float>(direction.y);
-  ray.ray.dir_z = static_cast<float>(direction.z);
-  // One hundredth is the largest slack, so no hit that float32 puts too near is lost.
-  ray.ray.tnear = static_cast<float>(0.99 * impl_->scale * std::max(near, previous ? previous->distance : 0.0));
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = ~0u;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene.get(), &query.context, &ray);
-  if (query.found) hit = query.best;
-  return query.found;
+  query.far = far;
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(impl_->scale * origin.x);
+  ray.org_y = static_cast<float>(impl_->scale * origin.y);
+  ray.org_z = static_cast<float>(impl_->scale * origin.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tfar = std::numeric_limits<float>::infinity(); // the filter knows the ends in double precision
+  ray.mask = ~0u;
+  rtcOccluded1(impl_->scene.get(), &query.context, &ray);
+  return ray.tfar < 0;
 }
 
 Vec4 interpolate(const Attribute* attribute, const RayHit& hit, const Vec4& fallback) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "domewarp/core/vectors.h"
@@ -20,11 +21,20 @@ struct RayHit {
   double weights[3] = {};     ///< barycentric, sum 1
 };
 
+/// A ray in eye space.
+struct Ray {
+  Vec3 direction = Vec3(0); ///< unit
+  double near = 0;          ///< hits nearer to the eye do not count
+  const RayHit* previous = nullptr; ///< the hit looked for comes after this one, in the order (nearness, object, triangle)
+};
+
 /// The triangles of a scene seen from the eye, ready for rays. The answers are those of a double-precision test that
 /// is watertight along shared edges, with ties settled by (object, triangle); Embree only proposes candidates.
 /// So they do not depend on its instruction set. Safe to share between threads.
 class RayGeometry {
  public:
+  static constexpr std::size_t packet_size = 16;
+
   /// @param parts must outlive the object
   /// @param embree device configuration, empty for Embree's own choice
   /// @throws Error(output) when Embree refuses, for instance for lack of memory
@@ -33,10 +43,14 @@ class RayGeometry {
   RayGeometry(const RayGeometry&) = delete;
   RayGeometry& operator=(const RayGeometry&) = delete;
 
-  /// The first hit along a unit eye-space direction at `near` or beyond, or the first one after `previous` in the order
-  /// (nearness, object, triangle). Culled back faces, masked and invisible fragments do not count.
-  /// @return false when nothing is there
-  bool first_hit(const Vec3& direction, double near, const RayHit* previous, RayHit& hit) const;
+  /// The first hit of every ray from the eye. Culled back faces, masked and invisible fragments do not count.
+  /// @param rays at most packet_size; quickest where they go the same way
+  /// @param hits one per ray, `part` null where nothing is there
+  void first_hits(std::span<const Ray> rays, RayHit* hits) const;
+
+  /// Whether something stands between `near` and `far` along a unit direction from any point of eye space. Both sides
+  /// of every triangle do, and so do masked texels that are there; blended surfaces do not.
+  bool is_blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
 
   /// Eye-space corner (0, 1, 2) of the triangle that was hit.
   const Vec3& corner(const RayHit& hit, int i) const;

@@ -109,17 +109,17 @@ TEST(Shading, LightFallsWithTheSlantUnlessUnlit) {
   SurfacePoint point;
   point.position = {0, 0, -3};
   point.normal = {0, 0, 7};
-  expect_colour(shade(look, point, false), {0.5, 0.5, 0.5, 1});
+  expect_colour(shade(look, point, light_at(look, point, {})), {0.5, 0.5, 0.5, 1});
   point.normal = {0, 2, 0};
-  expect_colour(shade(look, point, false), {0.175, 0.175, 0.175, 1});
-  expect_colour(shade(look, point, true), {0.5, 0.5, 0.5, 1});
+  expect_colour(shade(look, point, light_at(look, point, {})), {0.175, 0.175, 0.175, 1});
+  expect_colour(shade(look, point, light_at(look, point, {.unlit = true})), {0.5, 0.5, 0.5, 1});
 }
 
 TEST(Shading, EmissiveIsAddedWithoutLight) {
   Look look;
   look.base_color = Vec4(0, 0, 0, 1);
   look.emissive = {0.25, 0.5, 2};
-  expect_colour(shade(look, SurfacePoint{}, false), {0.25, 0.5, 2, 1});
+  expect_colour(shade(look, SurfacePoint{}, light_at(look, SurfacePoint{}, {})), {0.25, 0.5, 2, 1});
 }
 
 TEST(Shading, ResolveComposesOverTheBackground) {
