@@ -25,6 +25,7 @@ struct Result {
 /// One function per subcommand, each in the file of its name.
 Result run_convert_bench(const Options& options);
 Result run_map_bench(const Options& options);
+Result run_render_bench(const Options& options);
 
 struct Bench {
   const char* name;
@@ -36,6 +37,7 @@ struct Bench {
 inline constexpr Bench benches[] = {
     {"convert", "Whole conversions of 10^3 to 10^7 triangles: time and memory against reading and writing alone.", run_convert_bench},
     {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
+    {"render", "Primary rays per second of the reference ray tracer beside Embree's own on the same rays.", run_render_bench},
 };
 
 } // namespace domewarp::bench

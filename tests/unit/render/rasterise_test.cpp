@@ -109,21 +109,95 @@ TEST(Rasterise, BackFacesOfSingleSidedMaterialsAreNotDrawn) {
 }
 
 TEST(Rasterise, TilesMakeTheSamePicture) {
-  const Display display = make_display("1-r^2", 100, 70);
+  const Display display = make_display("1-r^2", 300, 210);
   Scene source = make_room_with_board();
   add_texture(source, 2, 10497, 9729);
   const Scene scene = prewarp(source, display, 16);
   RasterOptions options;
   const Frame whole = rasterise(scene, display.raster, options);
-  options.tile = 32;
-  const Frame tiled = rasterise(scene, display.raster, options);
-  EXPECT_EQ(whole.object, tiled.object);
-  for (std::size_t i = 0; i < whole.rgba.size(); ++i) ASSERT_NEAR(whole.rgba[i], tiled.rgba[i], 1) << i;
-  for (std::size_t i = 0; i < whole.depth.size(); ++i) ASSERT_NEAR(whole.depth[i], tiled.depth[i], 1e-5) << i;
-  // A vertex may be rounded to the neighbouring 1/256 px, which moves an edge across a pixel centre now and then.
-  std::size_t others = 0;
-  for (std::size_t i = 0; i < whole.triangle.size(); ++i) others += whole.triangle[i] != tiled.triangle[i];
-  EXPECT_LE(others, 7u);
+  for (const int tile : {32, 50, 101}) {
+    options.tile = tile;
+    const Frame tiled = rasterise(scene, display.raster, options);
+    EXPECT_EQ(whole.object, tiled.object);
+    EXPECT_EQ(whole.triangle, tiled.triangle) << "vertices lie on one grid for all tiles";
+    for (std::size_t i = 0; i < whole.rgba.size(); ++i) ASSERT_NEAR(whole.rgba[i], tiled.rgba[i], 1) << i;
+    for (std::size_t i = 0; i < whole.depth.size(); ++i) ASSERT_NEAR(whole.depth[i], tiled.depth[i], 1e-5) << i;
+  }
+}
+
+TEST(Rasterise, BandsMakeTheSamePicture) {
+  const Display display = make_display("1-r^2", 20, 4000);
+  const Scene scene = prewarp(make_room_with_board(), display, 16);
+  const Frame whole = rasterise(scene, display.raster, {});
+  Frame joined;
+  rasterise(scene, display.raster, {}, [&](const Frame& band, int top) {
+    EXPECT_EQ(top, joined.height);
+    joined.height += band.height;
+    joined.object.insert(joined.object.end(), band.object.begin(), band.object.end());
+  });
+  EXPECT_EQ(whole.object, joined.object);
+}
+
+TEST(Rasterise, SupersamplesAreCoverage) {
+  Scene scene = with_camera({});
+  add(scene, make_quad({0.25 / 32, -9, -1}, {9, 0, 0}, {0, 18, 0}, add_material(scene, Vec4(1)))); // a quarter px late
+  RasterOptions options;
+  options.unlit = true;
+  options.supersample = 4;
+  options.layers = Layers::all;
+  const Frame frame = rasterise(scene, square, options);
+  EXPECT_EQ(frame.light[at(31, 20)].w, 0);
+  EXPECT_EQ(frame.light[at(32, 20)].w, 0.75f);
+  EXPECT_EQ(frame.light[at(33, 20)].w, 1);
+  options.supersample = 1;
+  EXPECT_EQ(rasterise(scene, square, options).object, frame.object) << "ids are those of the centres";
+  options.supersample = 17;
+  EXPECT_THROW(rasterise(scene, square, options), Error);
+}
+
+TEST(Rasterise, BothProjectionsShowTheSamePicture) {
+  const Display display = make_display("1-r^2", 120, 80);
+  const Scene scene = make_room_with_board();
+  const Frame a = rasterise(prewarp(scene, display, 64, Output::perspective), display.raster, {});
+  const Frame b = rasterise(prewarp(scene, display, 64, Output::orthographic), display.raster, {});
+  EXPECT_LE(count_object_differences(a, b), 12u) << "of some 500 px of outline";
+  int worst = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    if (a.object[i / 4] == b.object[i / 4]) worst = std::max(worst, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
+  EXPECT_LE(worst, 2);
+  const Frame c = rasterise(prewarp(scene, display, 1, Output::orthographic), display.raster, {});
+  EXPECT_GT(count_object_differences(a, c), 100u) << "coarse geometry is another picture";
+}
+
+TEST(Rasterise, PointsAndLinesAreColoursOnly) {
+  Scene scene = with_camera({});
+  Primitive line;
+  line.topology = Topology::lines;
+  line.positions = {{-9, 0.01f, -1}, {9, 0.01f, -1}};
+  line.indices = {0, 1};
+  Primitive point;
+  point.topology = Topology::points;
+  point.positions = {{0.51f, 0.51f, -1}};
+  point.indices = {0};
+  add(scene, {"strokes", {line, point}});
+  const Frame frame = rasterise(scene, square, {});
+  EXPECT_EQ(frame.rgba[4 * at(40, 31)], 255);
+  EXPECT_EQ(frame.rgba[4 * at(48, 15)], 255);
+  EXPECT_EQ(frame.rgba[4 * at(40, 29)], 0);
+  EXPECT_EQ(frame.object[at(40, 31)], 0u);
+}
+
+TEST(Rasterise, DrawsThroughTheCameraThatIsAskedFor) {
+  Scene scene = with_camera(make_room());
+  scene.cameras.push_back(make_camera());
+  scene.cameras[1].world = glm::rotate(Mat4(1), 1.0, Vec3(0, 1, 0));
+  RasterOptions options;
+  const Frame first = rasterise(scene, square, options);
+  options.camera = 1;
+  EXPECT_GT(count_object_differences(first, rasterise(scene, square, options)), 500u);
+  options.camera = 2;
+  EXPECT_THROW(rasterise(scene, square, options), Error);
+  EXPECT_GE(first.subpixel_bits, 4);
 }
 
 TEST(Rasterise, TheSameSceneMakesTheSameBytes) {

@@ -175,6 +175,21 @@ TEST(RayTrace, TheFrameDoesNotDependOnTheInstructionSet) {
   }
 }
 
+TEST(RayTrace, TexturesBlendingAndSamplesDoNotDependOnTheInstructionSet) {
+  const Display display = make_display(bowl, 96, 96);
+  Scene scene = make_crowd(200);
+  add_texture(scene, 0, 10497, 9729);
+  add(scene, make_quad({-9, -9, -0.5}, {18, 0, 0}, {0, 18, 0}, add_material(scene, {1, 0, 0, 0.4}, AlphaMode::blend)));
+  RayTraceOptions options;
+  options.samples = 8;
+  options.embree = "isa=sse4.2";
+  const Frame reference = trace(scene, display, options);
+  for (const std::string isa : {"avx2", "avx512"}) {
+    options.embree = "isa=" + isa;
+    EXPECT_TRUE(is_same(reference, trace(scene, display, options))) << isa;
+  }
+}
+
 TEST(RayTrace, TheFrameDoesNotDependOnTheNumberOfThreads) {
   const Display display = make_display(bowl, 128, 128);
   const Scene scene = make_crowd(300);
