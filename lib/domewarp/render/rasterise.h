@@ -32,7 +32,7 @@ struct RasterOptions {
 /// it). Blended triangles are drawn after the others, farthest first; ids and positions are those of the nearest
 /// fragment that is not invisible. Points and lines are one sample wide, unlit, and appear in the colours only. Depth is
 /// float32, 1 at the near plane, with room of 1e-6 beyond both. Vertices are rounded to the driver's subpixel grid of
-/// the whole picture, so that tiles fit. Shading: see shading.h, without shadows.
+/// the whole picture, so that tiles fit but for what the driver clips at their borders. Shading: see shading.h, without shadows.
 /// @throws Error(input) when there is no camera or one that shows nothing, or the scene is inconsistent;
 ///         Error(usage) when the raster is no picture or `supersample` is out of range; Error(output) when no OpenGL 4.5
 ///         device answers or the scene does not fit into it.
