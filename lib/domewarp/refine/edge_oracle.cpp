@@ -41,6 +41,15 @@ EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchM
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
       rim_angle_(unnoticed_angle(surface, branch, options.tolerance)) {}
 
+EdgeOracle EdgeOracle::relaxed(double factor) const {
+  EdgeOracle oracle = *this;
+  oracle.options_.tolerance *= factor;
+  oracle.options_.face_tolerance *= factor;
+  oracle.options_.depth_tolerance *= factor;
+  oracle.rim_angle_ *= factor;
+  return oracle;
+}
+
 Mapped EdgeOracle::map_point(const Vec3& eye) const {
   const RadialFactors factors = map_.factors(eye);
   const double rho = glm::length(eye);

@@ -64,6 +64,9 @@ public:
   /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 
+  /// The same with every tolerance times `factor`.
+  EdgeOracle relaxed(double factor) const;
+
   const VisibleRegion& region() const { return region_; }
   const OracleOptions& options() const { return options_; }
 

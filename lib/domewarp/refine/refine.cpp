@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -57,6 +58,30 @@ double extent(const Soup& soup) {
   for (const SoupFace& face : soup.faces)
     for (const std::uint32_t point : face.point) farthest = std::max(farthest, glm::length(soup.points[point]));
   return farthest;
+}
+
+/// Refines within the limit: where the tolerance needs more triangles, every edge gets the same larger one, the
+/// smallest (to a factor of 1.2) that fits. Such a mesh is marked as stopped. When none fits, because the clip alone
+/// needs more, refinement ends where the limit was reached.
+RefinedMesh refine_within(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles) {
+  RefinedMesh mesh = refine_levels(soup, oracle, max_triangles);
+  if (!mesh.stopped) return mesh;
+  constexpr double hopeless = 1e8;
+  double high = 1;
+  std::optional<RefinedMesh> best;
+  while (!best && high < hopeless) {
+    high *= 4;
+    if (RefinedMesh tried = refine_levels(soup, oracle.relaxed(high), max_triangles); !tried.stopped) best = std::move(tried);
+  }
+  if (!best) return mesh;
+  for (double low = high / 4; high > 1.2 * low;) {
+    const double middle = std::sqrt(low * high);
+    RefinedMesh tried = refine_levels(soup, oracle.relaxed(middle), max_triangles);
+    (tried.stopped ? low : high) = middle;
+    if (!tried.stopped) best = std::move(tried);
+  }
+  best->stopped = true;
+  return std::move(*best);
 }
 
 /// What is carried over as it is; meshes are filled in branch by branch.
@@ -131,7 +156,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options);
-    const RefinedMesh refined = refine_levels(soup, oracle, options.max_triangles);
+    const RefinedMesh refined = refine_within(soup, oracle, options.max_triangles);
     report.levels = std::max(report.levels, refined.levels);
     report.map_evaluations += refined.evaluations;
     report.triangles_clipped += refined.clipped;

@@ -216,6 +216,17 @@ TEST(Refine, StopsAtTheLimitAndSaysSo) {
   EXPECT_GT(conversion.report.error_px_max, options.tolerance_px);
 }
 
+TEST(Refine, GivesEveryEdgeTheSameLargerToleranceWhenTheTrianglesAreLimited) {
+  RefineOptions options;
+  options.max_triangles = 800;
+  const Conversion conversion = convert_shape(box(), lens(Lens::equidistant, 180), options, raster);
+  EXPECT_EQ(conversion.report.limits_hit, std::vector<std::string>{"max-triangles"});
+  EXPECT_LE(conversion.report.triangles_out, options.max_triangles);
+  EXPECT_GT(conversion.report.error_px_max, options.tolerance_px);
+  EXPECT_LT(conversion.report.error_px_max, 4); // a mesh cut off at the limit is hundreds of pixels wrong
+  EXPECT_LE(measured_error_px(conversion, lens(Lens::equidistant, 180), Projection::perspective, raster, 8), 1.05 * conversion.report.error_px_max);
+}
+
 TEST(Refine, RefusesAToleranceThatIsNotPositive) {
   RefineOptions options;
   options.tolerance_px = -1;
