@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "domewarp/audit/inspect.h"
 #include "domewarp/convert/record.h"
+#include "domewarp/core/errors.h"
 #include "domewarp/gltf/read.h"
 #include "options.h"
 
@@ -15,18 +17,32 @@ namespace domewarp {
 namespace {
 
 struct Arguments {
-  std::string file;
+  std::string file, source;
   ReadOptions read;
-  bool json = false;
+  bool json = false, strict = false;
 };
+
+Picture make_picture(const Record& record) {
+  Surface surface(record.surface, screen_radius(record.raster));
+  ImageMap map = make_image_map(surface, Method::direct);
+  return {std::move(surface), std::move(map), record.view, record.raster, record.projection == Projection::perspective, record.near};
+}
 
 int run(const Arguments& arguments) {
   const Scene scene = read_scene(arguments.file, arguments.read);
-  const Raster raster = scene.extras.empty() ? Raster{} : parse_record(scene.extras, arguments.file).raster;
-  const InspectReport report = inspect(scene, raster.height);
+  std::optional<Picture> picture;
+  if (!scene.extras.empty()) picture = make_picture(parse_record(scene.extras, arguments.file));
+  std::optional<Scene> source;
+  if (!arguments.source.empty()) {
+    if (!picture) throw Error(ErrorCode::input, arguments.file + ": was not written by domewarp convert, so --source cannot be compared with it");
+    source = read_scene(arguments.source, arguments.read);
+  }
+  const InspectReport report = inspect(scene, {picture ? &*picture : nullptr, source ? &*source : nullptr});
   for (const std::string& warning : scene.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
   std::cout << (arguments.json ? to_json(report) : to_text(report));
-  return 0;
+  if (!arguments.strict || is_sound(report)) return 0;
+  std::cerr << "domewarp: " << arguments.file << ": has cracks, flips or lost area\n";
+  return static_cast<int>(ErrorCode::unkept);
 }
 
 } // namespace
@@ -35,7 +51,10 @@ void add_inspect_command(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("inspect", "Mesh and crack statistics of any glTF, raw or warped.");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("FILE", arguments->file, "The scene (.glb or .gltf)")->required();
+  command->add_option("--source", arguments->source, "The scene that FILE was converted from: tells its open edges apart, samples lost area and errors")
+      ->type_name("SCENE");
   add_read_options(*command, arguments->read);
+  command->add_flag("--strict", arguments->strict, "Exit with 3 when a warped file has cracks, flips or lost area");
   command->add_flag("--json", arguments->json, "Print the statistics as JSON");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

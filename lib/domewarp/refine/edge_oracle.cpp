@@ -64,6 +64,17 @@ MappedPoint EdgeOracle::locate(const Vec3& eye, int on) const {
   return point;
 }
 
+std::optional<MappedPoint> EdgeOracle::middle(const MappedPoint& a, const MappedPoint& b) const {
+  const Vec3 eye = point_at(a.eye, b.eye, 0.5);
+  if (eye == a.eye || eye == b.eye) return std::nullopt;
+  int on = -1;
+  for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i)
+    if (a.sides[i] == 0 && b.sides[i] == 0) on = i;
+  const MappedPoint point = locate(eye, on);
+  if (*std::min_element(point.sides.begin(), point.sides.end()) < 0) return std::nullopt;
+  return point;
+}
+
 std::optional<Split> EdgeOracle::split_at_boundary(const MappedPoint& a, const MappedPoint& b, bool& outside) const {
   const auto split = [&](double t, int on) -> std::optional<Split> {
     const Vec3 eye = point_at(a.eye, b.eye, t);

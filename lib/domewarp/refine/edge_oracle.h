@@ -53,6 +53,9 @@ public:
   /// Sides and image of a point. `on`: index of a boundary it is known to lie on, or -1.
   MappedPoint locate(const Vec3& eye, int on = -1) const;
 
+  /// The middle of an edge that nothing else asks to split; none where it would coincide with an end or be clipped.
+  std::optional<MappedPoint> middle(const MappedPoint& a, const MappedPoint& b) const;
+
   /// Error bound of an edge that is not in the mesh yet, without evaluating the map: for choosing diagonals.
   double diagonal_error(const MappedPoint& a, const MappedPoint& b) const;
 
@@ -67,6 +70,7 @@ public:
   /// The same with every tolerance times `factor`.
   EdgeOracle relaxed(double factor) const;
 
+  int orientation() const { return map_.branch().orientation; }
   const VisibleRegion& region() const { return region_; }
   const OracleOptions& options() const { return options_; }
 

@@ -12,7 +12,8 @@
 
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/weld.h"
-#include "domewarp/refine/split_patterns.h"
+#include "domewarp/refine/flips.h"
+#include "domewarp/refine/pattern_choice.h"
 
 namespace domewarp {
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t block_size = 2048;
 constexpr std::size_t deepest_level = 200; ///< twice what halving a double's range of angles could ever need
+constexpr int most_unflipping_rounds = 12;    ///< each takes three quarters of a side's bend away
 constexpr std::uint32_t local_bit = 0x80000000; ///< marks ids that count from the start of a block's own results
 
 std::size_t block_count(std::size_t items) { return (items + block_size - 1) / block_size; }
@@ -49,7 +51,19 @@ public:
   }
 
   RefinedMesh run(std::size_t max_triangles) {
-    std::size_t decided = 0;
+    settle(0, max_triangles);
+    for (int round = 0; round < most_unflipping_rounds && !mesh_.stopped; ++round) {
+      const std::size_t first_new = mesh_.edges.size();
+      if (!split_flipped_faces()) break;
+      settle(first_new, max_triangles);
+    }
+    sort_faces();
+    return std::move(mesh_);
+  }
+
+private:
+  /// Decides about all edges from `decided` on and splits, until no face asks for more.
+  void settle(std::size_t decided, std::size_t max_triangles) {
     while (!active_.empty()) {
       decided = split_edges(decided);
       split_faces();
@@ -58,11 +72,33 @@ public:
       mesh_.stopped = true;
       finish_early(decided);
     }
-    sort_faces();
-    return std::move(mesh_);
   }
 
-private:
+  /// Halves the sides that turn faces over, for all the faces on them. False when there are none.
+  bool split_flipped_faces() {
+    const std::vector<std::uint32_t> sides =
+        sides_of_flipped_faces(mesh_, oracle_.orientation(), 1e-3 * oracle_.options().tolerance);
+    first_split_edge_ = 0;
+    split_slot_.assign(mesh_.edges.size(), RefinedEdge::none);
+    std::uint32_t slots = 0;
+    for (const std::uint32_t e : sides)
+      if (const std::optional<MappedPoint> middle = oracle_.middle(mesh_.points[mesh_.edges[e].a], mesh_.points[mesh_.edges[e].b])) {
+        split_slot_[e] = slots++;
+        halve(e, *middle);
+      }
+    mesh_.evaluations += slots;
+    middle_wedges_.clear();
+    first_middle_wedge_.assign(slots, RefinedEdge::none);
+    const auto is_whole = [&](const RefinedFace& face) {
+      return std::none_of(face.edge.begin(), face.edge.end(), [&](std::uint32_t e) { return is_split(e); });
+    };
+    const auto touched = std::stable_partition(mesh_.faces.begin(), mesh_.faces.end(), is_whole);
+    active_.assign(touched, mesh_.faces.end());
+    mesh_.faces.erase(touched, mesh_.faces.end());
+    split_faces();
+    return slots > 0;
+  }
+
   void add_edge(std::uint32_t p, std::uint32_t q, std::uint32_t source) {
     RefinedEdge edge;
     const bool in_order = precedes(mesh_.points[p].eye, mesh_.points[q].eye);
@@ -161,7 +197,9 @@ private:
       point[3 + k] = mesh_.edges[face.edge[k]].middle;
       wedge[3 + k] = middle_wedges[k];
     }
-    const SplitPattern& pattern = choose(patterns_for(marks), point);
+    std::array<const MappedPoint*, 6> mapped{};
+    for (std::size_t i = 0; i < 6; ++i) mapped[i] = point[i] == RefinedEdge::none ? nullptr : &mesh_.points[point[i]];
+    const SplitPattern& pattern = choose_pattern(marks, mapped, oracle_);
     const std::uint32_t first_edge = static_cast<std::uint32_t>(block.edges.size());
     for (int i = 0; i < pattern.edges; ++i) block.edges.push_back({point[pattern.edge[i][0]], point[pattern.edge[i][1]]});
     for (int i = 0; i < pattern.faces; ++i) {
@@ -185,46 +223,6 @@ private:
     const int corner = std::min(from, to), side = std::max(from, to) - 3;        // half of a side
     const RefinedEdge& edge = mesh_.edges[face.edge[side]];
     return edge.child + (edge.a == face.point[corner] ? 0 : 1);
-  }
-
-  /// The pattern whose inner edges have the smallest sum of error bounds: 11 to 19 % fewer triangles than always the
-  /// same one. Ties go by position, so that the order of corners cannot show.
-  const SplitPattern& choose(const PatternChoice& choice, const std::array<std::uint32_t, 6>& point) const {
-    if (choice.count == 1) return choice.pattern[0];
-    int best = 0;
-    double best_cost = cost(choice.pattern[0], point);
-    for (int i = 1; i < choice.count; ++i) {
-      const double c = cost(choice.pattern[i], point);
-      if (c < best_cost || (c == best_cost && is_before(choice.pattern[i], choice.pattern[best], point))) {
-        best = i;
-        best_cost = c;
-      }
-    }
-    return choice.pattern[best];
-  }
-
-  double cost(const SplitPattern& pattern, const std::array<std::uint32_t, 6>& point) const {
-    std::array<double, 3> errors{};
-    for (int i = 0; i < pattern.edges; ++i) {
-      std::uint32_t p = point[pattern.edge[i][0]], q = point[pattern.edge[i][1]];
-      if (precedes(mesh_.points[q].eye, mesh_.points[p].eye)) std::swap(p, q);
-      errors[i] = oracle_.diagonal_error(mesh_.points[p], mesh_.points[q]);
-    }
-    std::sort(errors.begin(), errors.end()); // a sum of three must not depend on their order
-    return errors[0] + errors[1] + errors[2];
-  }
-
-  /// Compares the edge that tells two patterns of equal cost apart, by its lowest end, then its highest.
-  bool is_before(const SplitPattern& x, const SplitPattern& y, const std::array<std::uint32_t, 6>& point) const {
-    const auto ends = [&](const SplitPattern& pattern) {
-      const auto& telling = pattern.edge[pattern.faces == 3 ? 1 : 0];
-      Vec3 low = mesh_.points[point[telling[0]]].eye, high = mesh_.points[point[telling[1]]].eye;
-      if (precedes(high, low)) std::swap(low, high);
-      return std::pair(low, high);
-    };
-    const auto [x_low, x_high] = ends(x);
-    const auto [y_low, y_high] = ends(y);
-    return precedes(x_low, y_low) || (x_low == y_low && precedes(x_high, y_high));
   }
 
   /// A face none of whose edges needs a split: drawn, dropped, or given a vertex inside.

@@ -21,20 +21,20 @@ const std::vector<Vec3f> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 const std::vector<std::uint32_t> tetrahedron = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
 
 TEST(Inspect, AClosedMeshHasNoOpenEdge) {
-  const InspectReport report = inspect(scene_of(corners, tetrahedron), 1024);
+  const InspectReport report = inspect(scene_of(corners, tetrahedron));
   EXPECT_EQ(report.triangles, 4u);
   EXPECT_EQ(report.unique_positions, 4u);
   EXPECT_EQ(report.open_edges + report.non_manifold_edges + report.degenerate + report.duplicate + report.t_junctions, 0u);
 }
 
 TEST(Inspect, AMissingTriangleOpensThreeEdges) {
-  EXPECT_EQ(inspect(scene_of(corners, {0, 2, 1, 0, 1, 3, 1, 2, 3}), 1024).open_edges, 3u);
+  EXPECT_EQ(inspect(scene_of(corners, {0, 2, 1, 0, 1, 3, 1, 2, 3})).open_edges, 3u);
 }
 
 TEST(Inspect, CountsDuplicateDegenerateAndNonManifold) {
   std::vector<std::uint32_t> indices = tetrahedron;
   indices.insert(indices.end(), {0, 1, 2, 0, 0, 1});
-  const InspectReport report = inspect(scene_of(corners, indices), 1024);
+  const InspectReport report = inspect(scene_of(corners, indices));
   EXPECT_EQ(report.duplicate, 1u);
   EXPECT_EQ(report.degenerate, 1u);
   EXPECT_EQ(report.non_manifold_edges, 3u);
@@ -46,13 +46,13 @@ TEST(Inspect, SeamsAreWeldedByPositionAcrossNodes) {
   Mat4 shifted(1);
   shifted[3] = {1, 0, 0, 1};
   scene.instances.push_back({"other", 1, shifted});
-  const InspectReport report = inspect(scene, 1024);
+  const InspectReport report = inspect(scene);
   EXPECT_EQ(report.unique_positions, 3u);
   EXPECT_EQ(report.duplicate, 1u);
 }
 
 TEST(Inspect, FindsAVertexInsideAnOpenEdge) {
-  const InspectReport report = inspect(scene_of({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, -1, 0}}, {0, 1, 2, 3, 0, 4}), 1024);
+  const InspectReport report = inspect(scene_of({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, -1, 0}}, {0, 1, 2, 3, 0, 4}));
   EXPECT_EQ(report.t_junctions, 1u);
 }
 
@@ -67,10 +67,10 @@ Scene warped_pair(float shift) {
 }
 
 TEST(Inspect, SeesATornPositionThroughItsSource) {
-  EXPECT_EQ(inspect(warped_pair(0), 1000).cracks->torn_positions, 0u);
-  const InspectReport torn = inspect(warped_pair(0.01f), 1000);
+  EXPECT_EQ(inspect(warped_pair(0)).cracks->torn_positions, 0u);
+  const InspectReport torn = inspect(warped_pair(0.01f));
   EXPECT_EQ(torn.cracks->torn_positions, 1u);
-  EXPECT_NEAR(torn.cracks->max_gap_px, 5, 1e-5); // 0.01 of 1000 / 2 pixels per unit
+  EXPECT_NEAR(torn.cracks->max_gap_px, 20.48, 1e-4); // 0.01 of 4096 / 2 pixels per unit
 }
 
 } // namespace
