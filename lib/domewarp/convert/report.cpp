@@ -86,6 +86,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["refinement"] = {{"levels", refine.levels},
                         {"map_evaluations", refine.map_evaluations},
                         {"uncertified_edges", refine.uncertified_edges},
+                        {"uncertified_faces", refine.uncertified_faces},
                         {"near", refine.near}};
   if (options.refine.subdivision == Subdivision::isotropic)
     json["isotropic"] = {{"threshold", options.refine.isotropic.threshold},

@@ -17,6 +17,8 @@ namespace {
 
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
+constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
+constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
 
 Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
 
@@ -146,6 +148,8 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   EdgeDecision decision;
   const double wa = a.mapped.weight, wb = b.mapped.weight;
   const EdgeBend whole = bound_.edge(a, b, wa, wb);
+  // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified.
+  if (!(whole.second / (8 * 64 * std::min(wa, wb)) <= hopeless * options_.tolerance)) return split_by_samples(a, b);
   double error = peak_error(0, 0, whole.second, wa, wb);
   decision.depth_error = rounded_up(whole.depth);
   decision.error = rounded_up(error);
@@ -174,7 +178,37 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   decision.arch = std::min(decision.arch, rounded_up(arch));
   decision.depth_error = rounded_up(std::min(whole.depth, depth));
   if (decision.arch <= options_.tolerance && decision.depth_error <= options_.depth_tolerance) decision.split.reset();
+  return decision.split && has_fold() ? split_by_samples(a, b) : decision;
+}
+
+// Kept when it is short and seven points are within half the tolerance, split at the midpoint otherwise.
+EdgeDecision EdgeOracle::split_by_samples(const MappedPoint& a, const MappedPoint& b) const {
+  EdgeDecision decision;
+  decision.certified = false;
+  const MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
+  const Vec3 from = homogeneous(a.mapped), to = homogeneous(b.mapped);
+  double worst = 0;
+  for (const int eighth : {4, 2, 6, 1, 3, 5, 7}) {
+    const double t = eighth / 8.0;
+    const Vec2 exact = eighth == 4 ? middle.mapped.image : map_point(point_at(a.eye, b.eye, t)).image;
+    ++decision.evaluations;
+    worst = std::max(worst, glm::length(dehomogenise(from * (1 - t) + to * t) - exact));
+    if (2 * worst > options_.tolerance) break;
+  }
+  decision.error = decision.arch = rounded_up(worst);
+  decision.depth_error = rounded_up(std::abs(depth_deviation(a, b, middle)));
+  const bool wide = glm::length(b.eye - a.eye) > widest_sampled * std::min(a.rho, b.rho);
+  if (wide || 2 * worst > options_.tolerance || decision.depth_error > options_.depth_tolerance) decision.split = Split{0.5, middle};
   return decision;
+}
+
+bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const {
+  constexpr double third = 1.0 / 3.0;
+  for (const Vec3& weights : {Vec3(third), Vec3(0.5, 0.25, 0.25), Vec3(0.25, 0.5, 0.25), Vec3(0.25, 0.25, 0.5)}) {
+    ++evaluations;
+    if (interior_error(a, b, c, weights) > options_.tolerance) return false;
+  }
+  return true;
 }
 
 // Beside a fold of the curve R' has no bound; but the image of an edge lies in the part of an annulus that its ends and

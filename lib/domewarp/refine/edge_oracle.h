@@ -28,6 +28,7 @@ struct EdgeDecision {
   float error = 0;
   float depth_error = 0;
   float arch = 0;           ///< the error at t is at most 4 t (1 - t) arch, image units
+  bool certified = true;    ///< false where no bound helps (folds of the curve) and samples had to do: error, arch are sampled
   std::uint8_t evaluations = 0;
 };
 
@@ -67,10 +68,15 @@ public:
   /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 
+  /// Whether a face is within its tolerance at four points inside: for faces that no bound can prove good.
+  bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const;
+
   /// The same with every tolerance times `factor`.
   EdgeOracle relaxed(double factor) const;
 
   int orientation() const { return map_.branch().orientation; }
+  /// Whether R' grows without bound towards an end of the branch: where a bound proves nothing there, samples decide.
+  bool has_fold() const { return map_.branch().fold_low || map_.branch().fold_high; }
   const VisibleRegion& region() const { return region_; }
   const OracleOptions& options() const { return options_; }
 
@@ -83,6 +89,7 @@ private:
   double image_extent(const MappedPoint& a, const MappedPoint& middle, const MappedPoint& b) const;
   double depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const;
   EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b) const;
+  EdgeDecision split_by_samples(const MappedPoint& a, const MappedPoint& b) const;
 
   const BranchMap& map_;
   VisibleRegion region_;

@@ -238,7 +238,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle&
     const RefinedEdge& edge = refined.edges[e];
     errors.push_back(edge.error);
     report.depth_error_max = std::max(report.depth_error_max, static_cast<double>(edge.depth_error));
-    report.uncertified_edges += edge.error * (1 - 1e-6f) > tolerance;
+    report.uncertified_edges += !edge.certified || edge.error * (1 - 1e-6f) > tolerance;
     if (faces[e] != 1 || is_rim(edge)) continue;
     open.edges.push_back({edge.a, edge.b, 1});
     if (edge.source != RefinedEdge::none && soup.topology.edges[edge.source].faces == 1) continue;

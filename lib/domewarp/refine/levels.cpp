@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t block_size = 2048;
 constexpr std::size_t deepest_level = 200; ///< twice what halving a double's range of angles could ever need
 constexpr int most_unflipping_rounds = 12;    ///< each takes three quarters of a side's bend away
+constexpr int most_insertions = 4; ///< faces that their bound never proves good (long slivers beside the eye) would go on for ever
 constexpr std::uint32_t local_bit = 0x80000000; ///< marks ids that count from the start of a block's own results
 
 std::size_t block_count(std::size_t items) { return (items + block_size - 1) / block_size; }
@@ -32,7 +33,7 @@ struct FaceBlock {
   std::vector<std::array<std::uint32_t, 2>> edges; ///< point ids of new inner edges
   std::vector<MappedPoint> points;                 ///< inserted inside faces
   std::vector<Wedge> wedges;
-  std::size_t clipped = 0;
+  std::size_t clipped = 0, uncertified = 0;
   std::size_t evaluations = 0;
 };
 
@@ -124,6 +125,7 @@ private:
         edge.error = decision.error;
         edge.depth_error = decision.depth_error;
         edge.arch = decision.arch;
+        edge.certified = decision.certified;
         blocks[i].evaluations += decision.evaluations;
         if (decision.split) blocks[i].splits.emplace_back(static_cast<std::uint32_t>(e), decision.split->point);
       }
@@ -205,6 +207,7 @@ private:
     for (int i = 0; i < pattern.faces; ++i) {
       RefinedFace part;
       part.source = face.source;
+      part.insertions = face.insertions;
       for (int k = 0; k < 3; ++k) {
         const int from = pattern.face[i][k], to = pattern.face[i][(k + 1) % 3];
         part.point[k] = point[from];
@@ -283,9 +286,16 @@ private:
 
   std::optional<Vec3> error_vertex(const RefinedFace& face, FaceBlock& block) const {
     Vec3 arches;
-    for (int k = 0; k < 3; ++k) arches[k] = mesh_.edges[face.edge[k]].arch;
-    if (oracle_.is_good(corner(face, 0), corner(face, 1), corner(face, 2), arches, block.evaluations)) return std::nullopt;
-    return Vec3(1.0 / 3.0);
+    bool certified = !oracle_.has_fold();
+    for (int k = 0; k < 3; ++k) {
+      arches[k] = mesh_.edges[face.edge[k]].arch;
+      certified = certified && mesh_.edges[face.edge[k]].certified;
+    }
+    const MappedPoint &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
+    if (oracle_.is_good(a, b, c, arches, block.evaluations)) return std::nullopt;
+    if ((certified && face.insertions < most_insertions) || !oracle_.looks_good(a, b, c, block.evaluations)) return Vec3(1.0 / 3.0);
+    ++block.uncertified;
+    return std::nullopt;
   }
 
   void insert(const RefinedFace& face, const Vec3& weights, FaceBlock& block) const {
@@ -302,7 +312,8 @@ private:
       block.active.push_back({{face.point[k], face.point[next], point},
                               {face.wedge[k], face.wedge[next], wedge},
                               {face.edge[k], spoke + static_cast<std::uint32_t>(next), spoke + static_cast<std::uint32_t>(k)},
-                              face.source});
+                              face.source,
+                              static_cast<std::uint8_t>(std::min(255, face.insertions + 1))});
     }
   }
 
@@ -332,6 +343,7 @@ private:
     active_.insert(active_.end(), block.active.begin(), block.active.end());
     mesh_.faces.insert(mesh_.faces.end(), block.final.begin(), block.final.end());
     mesh_.clipped += block.clipped;
+    mesh_.uncertified_faces += block.uncertified;
     mesh_.evaluations += block.evaluations;
   }
 

@@ -18,11 +18,13 @@ struct RefinedEdge {
   std::uint32_t source = none;   ///< the edge of the soup it is part of, none inside a source face
   float error = 0, depth_error = 0;
   float arch = 0;                ///< see EdgeDecision
+  bool certified = true;         ///< see EdgeDecision
 };
 
 struct RefinedFace {
   Triangle point, wedge, edge;   ///< edge[k] joins corners k and k + 1
   std::uint32_t source = 0;      ///< index into Soup::faces
+  std::uint8_t insertions = 0;   ///< how many centroids were inserted on the way to it
 };
 
 /// One branch of the surface, refined and clipped.
@@ -32,6 +34,7 @@ struct RefinedMesh {
   std::vector<Wedge> wedges;     ///< those made here; their ids follow the soup's
   std::vector<RefinedFace> faces; ///< final and visible, in the order of the source
   std::size_t clipped = 0;
+  std::size_t uncertified_faces = 0; ///< judged by samples
   std::size_t evaluations = 0;
   std::size_t levels = 0;
   bool stopped = false;          ///< by the limit on triangles

@@ -160,6 +160,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     report.levels = std::max(report.levels, refined.levels);
     report.map_evaluations += refined.evaluations;
     report.triangles_clipped += refined.clipped;
+    report.uncertified_faces += refined.uncertified_faces;
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
     report.levels_ms += watch.lap();
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);

@@ -47,7 +47,8 @@ struct RefineReport {
   std::size_t levels = 0;            ///< of refinement, the deepest branch
   double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn; nan when nothing bounds them
   double depth_error_max = 0;
-  std::size_t uncertified_edges = 0; ///< drawn with a bound above the tolerance: a limit stopped them
+  std::size_t uncertified_edges = 0; ///< drawn with a bound above the tolerance (a limit stopped them) or judged by samples (folds)
+  std::size_t uncertified_faces = 0; ///< judged by samples: beside folds, and slivers close to the eye
   std::size_t t_junctions_in = 0;    ///< of the source, mended
   std::size_t t_junctions_out = 0;
   std::size_t near_misses = 0;       ///< pairs of ends of open edges of the source that are nearly but not equal
