@@ -29,7 +29,7 @@ inline Points interleaved(float* xyz) { return {xyz, xyz + 1, xyz + 2, 3}; }
 
 enum class BatchOutput {
   image,       ///< x', y', depth = |p|
-  /// w x', w y', -w with w = |p| g(theta), for a perspective camera of 90 degrees. g is BranchMap's to 0.1 %: any smooth
+  /// w x', w y', -w with w = |p| g(theta), for a perspective camera of 90 degrees. g is BranchMap's to 0.3 %: any smooth
   /// positive weight draws the same points, but a mesh must take all its vertices from one map.
   perspective,
 };
