@@ -149,8 +149,7 @@ void add_method_option(CLI::App& app, Method& method) {
 void add_no_skip_option(CLI::App& app, SkipOptions& skip) {
   const std::map<std::string, bool SkipOptions::*> names = {{"outside-view", &SkipOptions::outside_view},
                                                             {"back-faces", &SkipOptions::back_faces},
-                                                            {"zero-area", &SkipOptions::zero_area},
-                                                            {"whole-meshes", &SkipOptions::whole_meshes}};
+                                                            {"zero-area", &SkipOptions::zero_area}};
   add_choice<bool SkipOptions::*>(app, "--no-skip", "Do work that the picture does not need, to measure what skipping it saves; may be repeated",
                                   names, [&skip](bool SkipOptions::*member) { skip.*member = false; })
       ->trigger_on_parse();

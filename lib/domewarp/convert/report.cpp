@@ -49,7 +49,6 @@ Json skipped_json(const RefineReport& refine) {
   add("degenerate", skipped.degenerate, refine.triangles_in);
   add("off_picture", skipped.off_picture, refined);
   add("zero_area", skipped.zero_area, refined);
-  add("whole_meshes", skipped.whole_meshes, refine.triangles_in);
   json["share"] = share;
   return json;
 }

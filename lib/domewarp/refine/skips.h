@@ -10,7 +10,6 @@ struct SkipOptions {
   bool outside_view = true;      ///< primitives whose bounding cone misses everything the picture shows
   bool back_faces = true;        ///< faces of single-sided materials that the eye sees from behind
   bool zero_area = true;         ///< triangles whose written corners coincide
-  bool whole_meshes = true;      ///< primitives of which nothing is split or dropped: their indices are copied
 };
 
 /// Triangles (of the source, unless it says refined) that each kind of skipping left out.
@@ -20,7 +19,6 @@ struct SkipReport {
   std::size_t degenerate = 0;    ///< two corners at one position: they cover nothing
   std::size_t off_picture = 0;   ///< refined triangles outside the image rectangle
   std::size_t zero_area = 0;     ///< refined triangles two of whose written corners coincide
-  std::size_t whole_meshes = 0;  ///< triangles of primitives that kept their indices
 };
 
 } // namespace domewarp
