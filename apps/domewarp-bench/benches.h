@@ -24,8 +24,10 @@ struct Result {
 
 /// One function per subcommand, each in the file of its name.
 Result run_convert_bench(const Options& options);
+Result run_live_bench(const Options& options);
 Result run_map_bench(const Options& options);
 Result run_render_bench(const Options& options);
+Result run_thesis_bench(const Options& options);
 
 struct Bench {
   const char* name;
@@ -36,8 +38,10 @@ struct Bench {
 /// The subcommands. A new bench is a declaration above, a line here and its file in CMakeLists.txt.
 inline constexpr Bench benches[] = {
     {"convert", "Whole conversions of 10^3 to 10^7 triangles: time and memory against reading and writing alone.", run_convert_bench},
+    {"live", "Frames per second of warping all vertices for a moving eye, and how far it may move before refining again.", run_live_bench},
     {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
     {"render", "Primary rays per second of the reference ray tracer beside Embree's own on the same rays.", run_render_bench},
+    {"thesis", "Tables 2 and 3, Figures 25 and 26 of the thesis: frames per second and points, beside its figures.", run_thesis_bench},
 };
 
 } // namespace domewarp::bench

@@ -28,7 +28,8 @@ void append(LiveMesh& mesh, int instance, int primitive, std::size_t count, cons
 
 void append_source_positions(const Primitive& primitive, const std::string& where, LiveMesh& mesh) {
   const Attribute* source = find_attribute(primitive, source_position);
-  if (!source) throw Error(ErrorCode::usage, "make_live_mesh: " + where + " has no " + source_position + ": convert with source attributes");
+  if (!source)
+    throw Error(ErrorCode::usage, "make_live_mesh: " + where + " has no " + source_position + ": convert with source attributes");
   for (std::size_t i = 0; i < primitive.positions.size(); ++i)
     mesh.positions.emplace_back(source->values[3 * i], source->values[3 * i + 1], source->values[3 * i + 2]);
 }
@@ -48,7 +49,8 @@ std::size_t part_of(const LiveMesh& mesh, std::size_t vertex) {
   return static_cast<std::size_t>(after - mesh.parts.begin()) - 1;
 }
 
-void rewarp_block(const LiveMesh& mesh, const Mat4& view, const BatchMap& map, BatchOutput output, std::span<Vec3f> out, std::size_t begin, std::size_t end) {
+void rewarp_block(const LiveMesh& mesh, const Mat4& view, const BatchMap& map, BatchOutput output, std::span<Vec3f> out, std::size_t begin,
+                  std::size_t end) {
   Block eye;
   std::size_t part = part_of(mesh, begin);
   for (std::size_t at = begin; at < end; ++part) {
@@ -94,7 +96,8 @@ LiveMesh make_live_mesh(const Scene& warped, const ConvertReport& report) {
 
 void rewarp(const LiveMesh& mesh, const View& view, const BatchMap& map, BatchOutput output, std::span<Vec3f> out) {
   if (out.size() != mesh.positions.size())
-    throw Error(ErrorCode::usage, "rewarp: out must have room for " + std::to_string(mesh.positions.size()) + " points, got " + std::to_string(out.size()));
+    throw Error(ErrorCode::usage, "rewarp: out must have room for " + std::to_string(mesh.positions.size()) + " points, got " +
+                                      std::to_string(out.size()));
   const Mat4 to_eye = world_to_eye(view);
   const std::size_t count = out.size();
   parallel_each((count + block - 1) / block, 8, [&](std::size_t i) {
