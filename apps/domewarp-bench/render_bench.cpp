@@ -146,7 +146,9 @@ std::size_t trace_ours(const RayGeometry& geometry, const std::vector<Vec3>& dir
 Result run_render_bench(const Options& options) {
   const Scene scene = make_scene(options.quick ? 20 : 707);
   const Raster raster = options.quick ? Raster{64, 64} : Raster{1024, 1024};
-  const Surface surface({.curve = "1-r^2"}, screen_radius(raster));
+  SurfaceOptions display;
+  display.curve = "1-r^2";
+  const Surface surface(display, screen_radius(raster));
   const std::vector<Vec3> directions = make_directions(surface, raster);
   const Parts parts = prepare_parts(scene);
   const RayGeometry geometry(parts, View{}, "threads=1");

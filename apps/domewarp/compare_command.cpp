@@ -121,7 +121,9 @@ Comparison compare(const Arguments& arguments) {
   rays.near = record.near;
   rays.unlit = record.unlit;
   c.reference = ray_trace(scene, record.view, surface, record.raster, rays);
-  c.warped = rasterise(warped, record.raster, {.unlit = record.unlit});
+  RasterOptions raster;
+  raster.unlit = record.unlit;
+  c.warped = rasterise(warped, record.raster, raster);
   c.screen = make_screen(warped, record.raster);
   const ExactRays exact(scene, record.view);
   const CrossingsAlong crossings =

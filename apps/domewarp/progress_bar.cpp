@@ -25,7 +25,9 @@ std::string draw_bar(double done) {
   const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * bar_width);
   char percent[16];
   std::snprintf(percent, sizeof percent, "] %3d %%  ", static_cast<int>(std::clamp(done, 0.0, 1.0) * 100));
-  return "[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(bar_width - filled), '.') + percent;
+  std::string bar(1, '[');
+  bar.append(static_cast<std::size_t>(filled), '#').append(static_cast<std::size_t>(bar_width - filled), '.').append(percent);
+  return bar;
 }
 
 } // namespace

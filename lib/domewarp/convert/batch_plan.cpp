@@ -151,7 +151,8 @@ private:
   fs::path output_of(const Wish& wish, bool spell_extension) const {
     if (!wish.derived) return wish.output.has_extension() ? wish.output : fs::path(wish.output.string() + options_.extension);
     std::string stem = wish.output.string();
-    if (spell_extension) stem += "_" + lower_extension(wish.input).substr(std::min<std::size_t>(1, lower_extension(wish.input).size()));
+    const std::string extension = lower_extension(wish.input); // with its dot
+    if (spell_extension) stem.append("_").append(extension, std::min<std::size_t>(1, extension.size()));
     const fs::path file = stem + options_.extension;
     return options_.extension == ".gltf" ? fs::path(stem) / file.filename() : file;
   }
