@@ -18,6 +18,8 @@ namespace {
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
 constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
+constexpr double spare = 1.1;            ///< by how much more than the middle's deviation the greatest one is taken to be
+constexpr double most_counted = 64;      ///< pieces; what needs more is far from knowing how many
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
 
 Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
@@ -36,12 +38,18 @@ double unnoticed_angle(const Surface& surface, std::size_t branch, double tolera
   return 0.1 * tolerance / std::clamp(slope, 1.0, 1e4);
 }
 
+/// |R'|; 0 at a fold, where it is infinite and the image ends.
+double slope_at(const Surface& surface, std::size_t branch, double theta, bool is_fold) {
+  return is_fold ? 0 : std::abs(surface.radial(branch, theta).dr);
+}
+
 } // namespace
 
 EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchMap& map, VisibleRegion region,
                        const OracleOptions& options)
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
-      rim_angle_(unnoticed_angle(surface, branch, options.tolerance)) {}
+      rim_angle_(unnoticed_angle(surface, branch, options.tolerance)), low_slope_(slope_at(surface, branch, map.branch().theta_low, map.branch().fold_low)),
+      high_slope_(slope_at(surface, branch, highest_angle(map.branch()), map.branch().fold_high)) {}
 
 EdgeOracle EdgeOracle::relaxed(double factor) const {
   EdgeOracle oracle = *this;
@@ -107,12 +115,18 @@ std::optional<Split> EdgeOracle::split_at_boundary(const MappedPoint& a, const M
   return std::nullopt;
 }
 
-// The image of a cone is a circle; a chord of it that sags by more than the tolerance shows as a flat rim.
+// The image of a cone is a circle; a chord of it that sags by more than the tolerance shows as a flat rim. Its points lie
+// beyond the cone where that opens by more than 90 degrees, or is the inner end of a branch: they belong farther out still.
 bool EdgeOracle::is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const {
-  for (std::size_t i = 0; i < region_.boundaries.size(); ++i)
-    if (region_.boundaries[i].kind != Boundary::Kind::near_sphere && a.sides[i] == 0 && b.sides[i] == 0 &&
-        glm::length(a.mapped.image) - 0.5 * glm::length(a.mapped.image + b.mapped.image) > options_.tolerance)
-      return true;
+  for (std::size_t i = 0; i < region_.boundaries.size(); ++i) {
+    const Boundary& boundary = region_.boundaries[i];
+    if (boundary.kind == Boundary::Kind::near_sphere || a.sides[i] != 0 || b.sides[i] != 0) continue;
+    const bool is_high = boundary.kind == Boundary::Kind::high_cone, is_outer = is_high == (orientation() > 0);
+    const Vec3 middle = point_at(a.eye, b.eye, 0.5);
+    const double beyond = std::max(0.0, -signed_distance(boundary, middle) / glm::length(middle)) * (is_high ? high_slope_ : low_slope_);
+    const double sag = glm::length(a.mapped.image) - 0.5 * glm::length(a.mapped.image + b.mapped.image);
+    if ((is_outer ? sag + beyond : std::max(sag, beyond)) > options_.tolerance) return true;
+  }
   return false;
 }
 
@@ -138,47 +152,97 @@ EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b) cons
   return split_by_error(a, b);
 }
 
-// Interpolated over exact depth at the midpoint, less 1.
-double EdgeOracle::depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const {
-  if (options_.projection == Projection::orthographic) return 0.5 * (a.rho + b.rho) / middle.rho - 1;
-  return 0.5 * (a.mapped.weight + b.mapped.weight) / middle.mapped.weight - 1;
+DrawnPoint EdgeOracle::drawn(const MappedPoint& p) const {
+  return {p, p.mapped.image * p.mapped.weight, p.mapped.weight, options_.projection == Projection::perspective ? p.mapped.weight : p.rho, 0, 0, p.mapped};
+}
+
+DrawnPoint EdgeOracle::between(const DrawnPoint& p, const DrawnPoint& q) const {
+  DrawnPoint middle = halfway(p, q);
+  const Mapped exact = middle.exact = map_point(middle.eye);
+  middle.off = glm::length(middle.image - middle.weight * exact.image);
+  middle.depth_off = std::abs(middle.depth / (options_.projection == Projection::perspective ? exact.weight : middle.rho) - 1);
+  return middle;
+}
+
+DrawnPoint halfway(const DrawnPoint& p, const DrawnPoint& q) {
+  return {direction_of(point_at(p.eye, q.eye, 0.5)), 0.5 * (p.image + q.image), 0.5 * (p.weight + q.weight), 0.5 * (p.depth + q.depth), 0, 0, {}};
+}
+
+EdgeOracle::Piece EdgeOracle::piece(const DrawnPoint& p, const DrawnPoint& q) const {
+  const EdgeBend bend = bound_.edge(p, q, p.weight, q.weight);
+  const double depth = peak_error(p.depth_off, q.depth_off, 8 * bend.depth, 1, 1) * (1 + std::max(p.depth_off, q.depth_off));
+  return {bend.second, peak_error(p.off, q.off, bend.second, p.weight, q.weight), depth};
 }
 
 EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b) const {
   EdgeDecision decision;
-  const double wa = a.mapped.weight, wb = b.mapped.weight;
-  const EdgeBend whole = bound_.edge(a, b, wa, wb);
+  const DrawnPoint from = drawn(a), to = drawn(b);
+  const EdgeBend whole = bound_.edge(a, b, from.weight, to.weight);
+  const double least = std::min(from.weight, to.weight);
   // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified.
-  if (!(whole.second / (8 * 64 * std::min(wa, wb)) <= hopeless * options_.tolerance)) return split_by_samples(a, b);
-  double error = peak_error(0, 0, whole.second, wa, wb);
+  if (!(whole.second / (8 * 64 * least) <= hopeless * options_.tolerance)) return split_by_samples(a, b);
+  const auto is_good = [&] { return decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance; };
+  decision.error = rounded_up(peak_error(0, 0, whole.second, from.weight, to.weight));
   decision.depth_error = rounded_up(whole.depth);
-  decision.error = rounded_up(error);
-  decision.arch = rounded_up(whole.second / (8 * std::min(wa, wb)));
-  if (decision.arch <= options_.tolerance && whole.depth <= options_.depth_tolerance) return decision;
+  decision.arch = rounded_up(whole.second / (8 * least));
+  if (is_good()) return decision;
 
-  // The midpoint is the vertex that a split needs, and its deviation is certain; the halves' bounds cover the rest.
-  const MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
+  // What the middle is off by is certain; the bounds of the pieces cover the rest.
+  const DrawnPoint middle = between(from, to);
   decision.evaluations = 1;
-  decision.split = Split{0.5, middle};
-  const double wm = 0.5 * (wa + wb);
-  const double off = glm::length(wa * a.mapped.image + wb * b.mapped.image - 2 * wm * middle.mapped.image) / 2;
-  const double depth_off = std::abs(depth_deviation(a, b, middle));
-  if (off > options_.tolerance * wm || depth_off > options_.depth_tolerance) return decision;
-  const EdgeBend first = bound_.edge(a, middle, wa, wm), second = bound_.edge(middle, b, wm, wb);
-  error = std::min(error, std::max(peak_error(0, off, first.second, wa, wm), peak_error(off, 0, second.second, wm, wb)));
-  const double depth = peak_error(0, depth_off, 8 * std::max(first.depth, second.depth), 1, 1) * (1 + depth_off);
-  // (1 - t)(2 off + 8 (2 t - 1) second / 8) on the second half, and its mirror image, stay below the parabola.
-  double arch = std::max(off, 0.5 * off + 0.25 * std::max(first.second, second.second)) / std::min(wa, wb);
-  if (!(arch <= options_.tolerance)) {
-    const double extent = off / wm + image_extent(a, middle, b);
-    error = std::min(error, extent);
-    if (extent <= options_.tolerance) arch = extent;
+  decision.middle = rounded_up(middle.off / middle.weight);
+  if (middle.off > options_.tolerance * middle.weight || middle.depth_off > options_.depth_tolerance) {
+    decision.split = share_out(a, b, middle, decision.evaluations);
+    return decision;
   }
-  decision.error = rounded_up(error);
-  decision.arch = std::min(decision.arch, rounded_up(arch));
-  decision.depth_error = rounded_up(std::min(whole.depth, depth));
-  if (decision.arch <= options_.tolerance && decision.depth_error <= options_.depth_tolerance) decision.split.reset();
-  return decision.split && has_fold() ? split_by_samples(a, b) : decision;
+  const Piece first = piece(from, middle), second = piece(middle, to);
+  const auto lower = [&](double error, double depth, double arch) {
+    decision.error = std::min(decision.error, rounded_up(error));
+    decision.depth_error = std::min(decision.depth_error, rounded_up(depth));
+    decision.arch = std::min(decision.arch, rounded_up(arch / least));
+  };
+  // A piece is off by at most its ends' deviations, interpolated, and u (1 - u) / 2 of its second derivative; this over
+  // t (1 - t) is greatest at an end of the piece.
+  lower(std::max(first.error, second.error), std::max(first.depth, second.depth),
+        std::max(middle.off, 0.5 * middle.off + 0.25 * std::max(first.second, second.second)));
+  if (is_good()) return decision;
+
+  decision.evaluations += 2;
+  double error = 0, depth = 0, arch = 0;
+  for (const DrawnPoint* end : {&from, &to}) {
+    const DrawnPoint quarter = between(*end, middle);
+    const Piece outer = piece(*end, quarter), inner = piece(quarter, middle);
+    error = std::max({error, outer.error, inner.error});
+    depth = std::max({depth, outer.depth, inner.depth});
+    arch = std::max({arch, quarter.off + outer.second / 2, (quarter.off + inner.second / 8) * 4 / 3, middle.off + inner.second / 8});
+  }
+  lower(error, depth, arch);
+  if (is_good()) return decision;
+
+  const double extent = middle.off / middle.weight + image_extent(a, b, map_point(middle.eye).image);
+  if (extent <= options_.tolerance) lower(extent, depth, extent * least);
+  if (is_good()) return decision;
+  if (has_fold()) return split_by_samples(a, b);
+  decision.split = Split{0.5, {middle, sides_of(region_, middle.eye), middle.exact}};
+  return decision;
+}
+
+// Halving alone makes 2^k pieces where n would do: an edge that needs n is split at floor(n / 2) / n of its angle.
+Split EdgeOracle::share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const {
+  const double excess = std::max(middle.off / (options_.tolerance * middle.weight), middle.depth_off / options_.depth_tolerance);
+  const double pieces = std::ceil(std::sqrt(excess * spare));
+  if (pieces <= 2 || pieces > most_counted) return {0.5, {middle, sides_of(region_, middle.eye), middle.exact}};
+  const double share = std::floor(pieces / 2) / pieces;
+  const double angle = std::atan2(glm::length(glm::cross(a.eye, b.eye)), glm::dot(a.eye, b.eye));
+  const double p = a.rho * std::sin(share * angle), q = b.rho * std::sin((1 - share) * angle), t = p / (p + q);
+  ++evaluations;
+  return {t, locate(point_at(a.eye, b.eye, t))};
+}
+
+// Interpolated over exact depth at the midpoint, less 1.
+double EdgeOracle::depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const {
+  if (options_.projection == Projection::orthographic) return 0.5 * (a.rho + b.rho) / middle.rho - 1;
+  return 0.5 * (a.mapped.weight + b.mapped.weight) / middle.mapped.weight - 1;
 }
 
 // Kept when it is short and seven points are within half the tolerance, split at the midpoint otherwise.
@@ -202,20 +266,10 @@ EdgeDecision EdgeOracle::split_by_samples(const MappedPoint& a, const MappedPoin
   return decision;
 }
 
-bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const {
-  constexpr double third = 1.0 / 3.0;
-  for (const Vec3& weights : {Vec3(third), Vec3(0.5, 0.25, 0.25), Vec3(0.25, 0.5, 0.25), Vec3(0.25, 0.25, 0.5)}) {
-    ++evaluations;
-    if (interior_error(a, b, c, weights) > options_.tolerance) return false;
-  }
-  return true;
-}
-
 // Beside a fold of the curve R' has no bound; but the image of an edge lies in the part of an annulus that its ends and
 // its extreme angle span, and so do the chords of its halves. R is monotone over a branch.
-double EdgeOracle::image_extent(const MappedPoint& a, const MappedPoint& m, const MappedPoint& b) const {
-  const auto radius = [](const MappedPoint& p) { return glm::length(p.mapped.image); };
-  auto [low, high] = std::minmax({radius(a), radius(m), radius(b)});
+double EdgeOracle::image_extent(const MappedPoint& a, const MappedPoint& b, const Vec2& middle) const {
+  auto [low, high] = std::minmax({glm::length(a.mapped.image), glm::length(middle), glm::length(b.mapped.image)});
   if (const std::optional<double> t = extremum(Boundary{Boundary::Kind::high_cone}, a.eye, b.eye)) {
     const double extreme = glm::length(map_point(point_at(a.eye, b.eye, *t)).image);
     low = std::min(low, extreme);
@@ -231,63 +285,6 @@ double EdgeOracle::diagonal_error(const MappedPoint& a, const MappedPoint& b) co
     if (*std::min_element(p->sides.begin(), p->sides.end()) < 0) return glm::length(b.eye - a.eye) * 1e100;
   const double wa = a.mapped.weight, wb = b.mapped.weight;
   return peak_error(0, 0, bound_.edge(a, b, wa, wb).second, wa, wb);
-}
-
-// Two sides have arches, and on every segment parallel to the third the second derivative is that along it. Three such
-// bounds are open; the side with the lowest arch promises the least.
-bool EdgeOracle::is_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches, std::size_t& evaluations) const {
-  if (arches.y < arches.x && arches.y <= arches.z) return is_good(b, c, a, {arches.y, arches.z, arches.x}, evaluations);
-  if (arches.z < arches.x) return is_good(c, a, b, {arches.z, arches.x, arches.y}, evaluations);
-  const Vec3 weights(a.mapped.weight, b.mapped.weight, c.mapped.weight);
-  const double least = 8 * std::min({weights.x, weights.y, weights.z});
-  const double inner = bound_.face(a, b, c, weights, b.eye - a.eye, weights.y - weights.x) / least;
-  if (peak_face(Vec3(0), {inner, arches.y, arches.z}) <= options_.face_tolerance) return true;
-  if (is_good_across(a, b, c, arches)) return true;
-  ++evaluations;
-  return is_good_around(a, b, c, arches);
-}
-
-// Every point lies on a segment parallel to a height, between the side it stands on and one of the others: this proves
-// flat faces good, whose sides leave their interior next to nothing.
-bool EdgeOracle::is_good_across(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const {
-  if (arches.y > arches.x && arches.y >= arches.z) return is_good_across(b, c, a, {arches.y, arches.z, arches.x});
-  if (arches.z > arches.x) return is_good_across(c, a, b, {arches.z, arches.x, arches.y});
-  const Vec3 weights(a.mapped.weight, b.mapped.weight, c.mapped.weight), d = b.eye - a.eye;
-  const double foot = std::clamp(glm::dot(c.eye - a.eye, d) / glm::dot(d, d), 0.0, 1.0);
-  const double least = 8 * std::min({weights.x, weights.y, weights.z});
-  const double second = bound_.face(a, b, c, weights, c.eye - point_at(a.eye, b.eye, foot), weights.z - (1 - foot) * weights.x - foot * weights.y);
-  return arches.x + second / least <= options_.face_tolerance;
-}
-
-// The deviation at the centroid is certain. Towards it the face falls into three, whose spokes have arches.
-bool EdgeOracle::is_good_around(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const {
-  const std::array<const MappedPoint*, 3> corner{&a, &b, &c};
-  constexpr double third = 1.0 / 3.0;
-  const double off = interior_error(a, b, c, Vec3(third));
-  if (off > options_.face_tolerance) return false;
-  const Direction centre = direction_of((a.eye + b.eye + c.eye) * third);
-  const double weight = (a.mapped.weight + b.mapped.weight + c.mapped.weight) * third;
-  std::array<double, 3> spoke;
-  for (int k = 0; k < 3; ++k) {
-    const double w = corner[k]->mapped.weight;
-    spoke[k] = bound_.edge(*corner[k], centre, w, weight).second / (8 * std::min(w, weight));
-  }
-  for (int k = 0; k < 3; ++k) {
-    const MappedPoint &p = *corner[k], &q = *corner[(k + 1) % 3];
-    const double wp = p.mapped.weight, wq = q.mapped.weight, least = 8 * std::min({wp, wq, weight});
-    const bool along_q = spoke[(k + 1) % 3] < spoke[k];
-    const MappedPoint& r = along_q ? q : p;
-    const double inner = bound_.face(p, q, centre, {wp, wq, weight}, centre.eye - r.eye, weight - r.mapped.weight) / least;
-    const Vec3 sides = along_q ? Vec3(arches[k], inner, spoke[k]) : Vec3(arches[k], spoke[(k + 1) % 3], inner);
-    if (peak_face({0, 0, off}, sides) > options_.face_tolerance) return false;
-  }
-  return true;
-}
-
-double EdgeOracle::interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {
-  const Vec3 drawn = homogeneous(a.mapped) * weights.x + homogeneous(b.mapped) * weights.y + homogeneous(c.mapped) * weights.z;
-  const Mapped exact = map_point(a.eye * weights.x + b.eye * weights.y + c.eye * weights.z);
-  return glm::length(dehomogenise(drawn) - exact.image);
 }
 
 } // namespace domewarp

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -16,6 +17,19 @@ struct MappedPoint : Direction {
   Mapped mapped;            ///< only where no side is -1
 };
 
+/// A point of an edge or face as it would be drawn without being a vertex: interpolated between those that are.
+struct DrawnPoint : Direction {
+  Vec2 image = Vec2(0);     ///< homogeneous: times weight
+  double weight = 1;
+  double depth = 0;         ///< perspective output: the weight; orthographic output: the distance
+  double off = 0;           ///< distance between image and weight times the exact image
+  double depth_off = 0;     ///< relative error of depth
+  Mapped exact;             ///< where it belongs
+};
+
+/// The middle of a segment, its deviations unknown (0).
+DrawnPoint halfway(const DrawnPoint& p, const DrawnPoint& q);
+
 /// An edge that must be split, and the point that splits it.
 struct Split {
   double t = 0.5;           ///< from the end that precedes
@@ -27,9 +41,15 @@ struct EdgeDecision {
   std::optional<Split> split;
   float error = 0;
   float depth_error = 0;
+  float middle = -1;        ///< the error at the middle, image units, where it was measured
   float arch = 0;           ///< the error at t is at most 4 t (1 - t) arch, image units
   bool certified = true;    ///< false where no bound helps (folds of the curve) and samples had to do: error, arch are sampled
   std::uint8_t evaluations = 0;
+};
+
+/// What an EdgeDecision tells a face of its side.
+struct SideBound {
+  double middle = -1, arch = 0;
 };
 
 struct OracleOptions {
@@ -41,8 +61,8 @@ struct OracleOptions {
 
 /// Everything decided about an edge is decided here, from its two end points alone, in the order given by `precedes`.
 /// In this order: split where it crosses a boundary; split where it dips across one and back; leave it when it is
-/// outside; split at the angle's bisector beyond 60 degrees; split at the midpoint while the error bound exceeds the
-/// tolerance.
+/// outside; split at the angle's bisector beyond 60 degrees; split while the error bound exceeds the tolerance, an
+/// edge that needs n pieces at floor(n / 2) / n of its angle.
 class EdgeOracle {
 public:
   EdgeOracle(const Surface& surface, std::size_t branch, const BranchMap& map, VisibleRegion region,
@@ -61,9 +81,10 @@ public:
   double diagonal_error(const MappedPoint& a, const MappedPoint& b) const;
 
   /// Whether the error bound of a face, all of it, is within the tolerance.
-  /// @param arches of its sides ab, bc, ca; all within the tolerance
+  /// @param side k is between corners k and k + 1
+  /// @param depth it is judged in 4^depth parts at most
   /// @param evaluations raised by the number of times that the map was asked
-  bool is_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches, std::size_t& evaluations) const;
+  bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, std::size_t& evaluations) const;
 
   /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
@@ -81,13 +102,22 @@ public:
   const OracleOptions& options() const { return options_; }
 
 private:
+  /// Bounds of what is drawn between two points: of the second derivative along, of the error, of the depth's.
+  struct Piece {
+    double second, error, depth;
+  };
+
   Mapped map_point(const Vec3& eye) const;
   std::optional<Split> split_at_boundary(const MappedPoint& a, const MappedPoint& b, bool& outside) const;
   bool is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const;
-  bool is_good_across(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const;
-  bool is_good_around(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& arches) const;
-  double image_extent(const MappedPoint& a, const MappedPoint& middle, const MappedPoint& b) const;
+  bool is_good_in_parts(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, int depth, std::size_t& evaluations) const;
+  bool is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const;
+  double image_extent(const MappedPoint& a, const MappedPoint& b, const Vec2& middle) const;
   double depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const;
+  DrawnPoint drawn(const MappedPoint& p) const;
+  DrawnPoint between(const DrawnPoint& p, const DrawnPoint& q) const; ///< one evaluation
+  Piece piece(const DrawnPoint& p, const DrawnPoint& q) const;
+  Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const;
   EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b) const;
   EdgeDecision split_by_samples(const MappedPoint& a, const MappedPoint& b) const;
 
@@ -96,6 +126,7 @@ private:
   OracleOptions options_;
   ErrorBound bound_;
   double rim_angle_;        ///< how far (radians) an edge may dip across a cone unnoticed
+  double low_slope_, high_slope_; ///< |R'| at the ends of the branch, 0 at a fold
 };
 
 } // namespace domewarp

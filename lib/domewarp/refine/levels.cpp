@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t block_size = 2048;
 constexpr std::size_t deepest_level = 200; ///< twice what halving a double's range of angles could ever need
 constexpr int most_unflipping_rounds = 12;    ///< each takes three quarters of a side's bend away
+constexpr int first_depth = 2;     ///< a face is judged in 16 parts, and more finely after each insertion
 constexpr int most_insertions = 4; ///< faces that their bound never proves good (long slivers beside the eye) would go on for ever
 constexpr std::uint32_t local_bit = 0x80000000; ///< marks ids that count from the start of a block's own results
 
@@ -124,6 +125,7 @@ private:
         const EdgeDecision decision = oracle_.decide(mesh_.points[edge.a], mesh_.points[edge.b]);
         edge.error = decision.error;
         edge.depth_error = decision.depth_error;
+        edge.middle_error = decision.middle;
         edge.arch = decision.arch;
         edge.certified = decision.certified;
         blocks[i].evaluations += decision.evaluations;
@@ -285,14 +287,15 @@ private:
   }
 
   std::optional<Vec3> error_vertex(const RefinedFace& face, FaceBlock& block) const {
-    Vec3 arches;
+    std::array<SideBound, 3> side;
     bool certified = !oracle_.has_fold();
     for (int k = 0; k < 3; ++k) {
-      arches[k] = mesh_.edges[face.edge[k]].arch;
-      certified = certified && mesh_.edges[face.edge[k]].certified;
+      const RefinedEdge& edge = mesh_.edges[face.edge[k]];
+      side[k] = {edge.middle_error, edge.arch};
+      certified = certified && edge.certified;
     }
     const MappedPoint &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
-    if (oracle_.is_good(a, b, c, arches, block.evaluations)) return std::nullopt;
+    if (oracle_.is_good({&a, &b, &c}, side, first_depth + face.insertions, block.evaluations)) return std::nullopt;
     if ((certified && face.insertions < most_insertions) || !oracle_.looks_good(a, b, c, block.evaluations)) return Vec3(1.0 / 3.0);
     ++block.uncertified;
     return std::nullopt;

@@ -17,6 +17,7 @@ struct RefinedEdge {
   std::uint32_t child = 0;       ///< its halves: child (with a) and child + 1 (with b)
   std::uint32_t source = none;   ///< the edge of the soup it is part of, none inside a source face
   float error = 0, depth_error = 0;
+  float middle_error = -1;       ///< see EdgeDecision
   float arch = 0;                ///< see EdgeDecision
   bool certified = true;         ///< see EdgeDecision
 };
