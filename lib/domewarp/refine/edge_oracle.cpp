@@ -249,7 +249,9 @@ double EdgeOracle::depth_deviation(const MappedPoint& a, const MappedPoint& b, c
 EdgeDecision EdgeOracle::split_by_samples(const MappedPoint& a, const MappedPoint& b) const {
   EdgeDecision decision;
   decision.certified = false;
-  const MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
+  // Chords of a rim may be beyond it, so the middle is mapped whatever its sides: left out, its depth would be wrong.
+  MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
+  middle.mapped = map_point(middle.eye);
   const Vec3 from = homogeneous(a.mapped), to = homogeneous(b.mapped);
   double worst = 0;
   for (const int eighth : {4, 2, 6, 1, 3, 5, 7}) {
