@@ -285,8 +285,9 @@ double EdgeOracle::image_extent(const MappedPoint& a, const MappedPoint& b, cons
 double EdgeOracle::diagonal_error(const MappedPoint& a, const MappedPoint& b) const {
   for (const MappedPoint* p : {&a, &b})
     if (*std::min_element(p->sides.begin(), p->sides.end()) < 0) return glm::length(b.eye - a.eye) * 1e100;
+  // Beside a fold there is no bound: an edge is at most about as far off as it is long, and less than one to the outside.
   const double wa = a.mapped.weight, wb = b.mapped.weight;
-  return peak_error(0, 0, bound_.edge(a, b, wa, wb).second, wa, wb);
+  return std::min(peak_error(0, 0, bound_.edge(a, b, wa, wb).second, wa, wb), glm::length(a.mapped.image - b.mapped.image));
 }
 
 } // namespace domewarp
