@@ -44,11 +44,15 @@ void order_triangles(Primitive& primitive) {
   primitive.indices = std::move(ordered);
 }
 
-/// Numbers vertices by their first use; those that nothing uses are dropped.
+/// Numbers vertices by their first use; those that nothing uses are dropped. (meshopt's own numbering takes triangles only.)
 void order_vertices(Primitive& primitive) {
-  std::vector<std::uint32_t> remap(primitive.positions.size());
-  const std::size_t used = meshopt_optimizeVertexFetchRemap(remap.data(), primitive.indices.data(), primitive.indices.size(), remap.size());
-  meshopt_remapIndexBuffer(primitive.indices.data(), primitive.indices.data(), primitive.indices.size(), remap.data());
+  constexpr std::uint32_t unused = ~0U; // as meshopt_remapVertexBuffer has it
+  std::vector<std::uint32_t> remap(primitive.positions.size(), unused);
+  std::uint32_t used = 0;
+  for (std::uint32_t& index : primitive.indices) {
+    if (remap[index] == unused) remap[index] = used++;
+    index = remap[index];
+  }
   std::vector<Vec3f> positions(used);
   meshopt_remapVertexBuffer(positions.data(), primitive.positions.data(), remap.size(), sizeof(Vec3f), remap.data());
   for (Attribute& attribute : primitive.attributes) {

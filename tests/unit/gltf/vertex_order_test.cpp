@@ -111,5 +111,19 @@ TEST(GeometricExtensions, AreDroppedAndNamed) {
   EXPECT_EQ(scene.materials[1].json, "{}");
 }
 
+// Mesh_PrimitiveMode_01.gltf (lines, a number of indices that 3 does not divide) ended in an assertion of meshoptimizer.
+TEST(VertexOrder, NumbersTheVerticesOfLinesAndPoints) {
+  for (const Topology topology : {Topology::lines, Topology::points}) {
+    Scene scene = shuffled_grid(1, AlphaMode::opaque);
+    Primitive& primitive = scene.meshes[0].primitives[0];
+    primitive.topology = topology;
+    primitive.indices = {3, 1, 1, 0};
+    optimize_vertex_order(scene);
+    EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 1, 2}));
+    EXPECT_EQ(primitive.attributes[0].values, (std::vector<float>{3, 1, 0}));
+    EXPECT_EQ(primitive.positions, (std::vector<Vec3f>{{1, 1, 0}, {0, 1, 0}, {0, 0, 0}}));
+  }
+}
+
 } // namespace
 } // namespace domewarp::test
