@@ -98,9 +98,41 @@ TEST(Interval, EncloseArithmeticAndPowers) {
   }
 }
 
+// Whether it holds the number that a rough one stands for; false where the rough one is too near an end to tell.
+bool holds(const Interval& interval, const Rough& value) {
+  return value.value() - value.error() >= interval.lo && value.value() + value.error() <= interval.hi;
+}
+
+TEST(Interval, EncloseAHundredThousandValuesOfEachThesisCurve) {
+  std::mt19937_64 random(15);
+  for (const ReferenceCurve& reference : reference_curves()) {
+    const Curve curve = make_curve(std::string(reference.text));
+    for (int i = 0; i < 100000; ++i) {
+      const Cell cell = random_cell(random, 0, reference.end);
+      const Interval f = enclose_jet(curve, cell.interval).v;
+      const bool is_held = holds(f, reference.at(Rough(cell.point))) || holds(f, reference.at(Real(cell.point)));
+      ASSERT_TRUE(is_held) << reference.text << " at " << cell.point;
+    }
+  }
+}
+
+TEST(Interval, TheRoughNumbersOfTheTestsHoldTheExactOnes) {
+  std::mt19937_64 random(16);
+  for (const ReferenceCurve& reference : reference_curves()) {
+    int sharp = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const double r = random_cell(random, 0, reference.end).point;
+      const Rough value = reference.at(Rough(r));
+      ASSERT_TRUE(value.contains(reference.at(Real(r)))) << reference.text << " at " << r;
+      sharp += !(value + Rough(1e-17)).contains(reference.at(Real(r)));
+    }
+    EXPECT_GT(sharp, 1500) << reference.text;
+  }
+}
+
 TEST(Interval, EncloseTheThesisCurvesWithTheirDerivatives) {
   std::mt19937_64 random(14);
-  const Real step("1e-20");
+  const Real step("1e-20"), wide("1e-15");
   for (const ReferenceCurve& reference : reference_curves()) {
     const Curve curve = make_curve(std::string(reference.text));
     for (int i = 0; i < 10000; ++i) {
@@ -113,6 +145,11 @@ TEST(Interval, EncloseTheThesisCurvesWithTheirDerivatives) {
       if (cell.point < 1e-9 || cell.point > reference.end - 1e-9) continue;
       const Interval slack(std::nextafter(jet.d.lo, -1e300), std::nextafter(jet.d.hi, 1e300));
       ASSERT_TRUE(holds(slack, slope)) << reference.text << " at " << cell.point;
+      const Real x(cell.point), second = (reference.value(x + wide) - Real(2) * reference.value(x) + reference.value(x - wide)) / (wide * wide);
+      // At a kink there is no second derivative, and differences cross it.
+      if (std::abs(cell.point - reference.kink) < 1e-9) continue;
+      const double room = 1e-12 * (1 + std::max(std::abs(jet.dd.lo), std::abs(jet.dd.hi)));
+      ASSERT_TRUE(holds(Interval(jet.dd.lo - room, jet.dd.hi + room), second)) << reference.text << " at " << cell.point;
     }
   }
 }

@@ -16,6 +16,10 @@ public:
     mpfr_set_d(number_, value, MPFR_RNDN);
   }
   Real(int value) : Real(static_cast<double>(value)) {}
+  explicit Real(long double value) {
+    mpfr_init2(number_, bits);
+    mpfr_set_ld(number_, value, MPFR_RNDN);
+  }
   explicit Real(const char* decimal) {
     mpfr_init2(number_, bits);
     mpfr_set_str(number_, decimal, 10, MPFR_RNDN);
@@ -31,6 +35,7 @@ public:
   ~Real() { mpfr_clear(number_); }
 
   explicit operator double() const { return mpfr_get_d(number_, MPFR_RNDN); }
+  long double to_long_double() const { return mpfr_get_ld(number_, MPFR_RNDN); }
   bool is_nan() const { return mpfr_nan_p(number_) != 0; }
   int compare(double other) const { return mpfr_cmp_d(number_, other); }
 

@@ -19,7 +19,9 @@ public:
   struct Answer {
     PointState state = PointState::blind;
     std::size_t branch = 0; ///< nearest of those that show a visible point
-    bool is_close = false;  ///< within 1e-30 of an edge that is itself a rounded number: any state is right
+    /// The direction is within 1e-30 of an edge that is itself a rounded number: `other`, what lies across it, is as right.
+    bool is_close = false;
+    PointState other = PointState::blind;
   };
   /// @param p finite, not zero
   virtual Answer answer(const Vec3& p) const = 0;
