@@ -35,15 +35,15 @@ double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json table_json(const TableReport& table) {
-  return {{"used", table.used}, {"pieces", table.pieces}, {"degree", table.degree}, {"max_error", table.max_error}, {"build_ms", table.build_ms}};
+  return {{"used", table.used}, {"reason", to_string(table.reason)}, {"pieces", table.pieces}, {"degree", table.degree}, {"max_error", table.max_error}, {"build_ms", table.build_ms}};
 }
 
 /// All branches taken together.
 TableReport total(const ImageMap& map) {
-  TableReport sum{true};
+  TableReport sum{true, TableReason::used};
   for (const BranchMap& branch : map.branches) {
     const TableReport& table = branch.table();
-    sum = {sum.used && table.used, sum.pieces + table.pieces, std::max(sum.degree, table.degree),
+    sum = {sum.used && table.used, table.used ? sum.reason : table.reason, sum.pieces + table.pieces, std::max(sum.degree, table.degree),
            std::max(sum.max_error, table.max_error), sum.build_ms + table.build_ms};
   }
   return sum;
@@ -106,7 +106,7 @@ void print(const Surface& surface, const ImageMap& map) {
   for (const std::string& line : summarise(surface)) std::cout << line << "\n";
   const TableReport table = total(map);
   if (!table.used) {
-    std::cout << "table: not used, the direct method answers\n";
+    std::cout << "table: not used, the direct method answers: " << to_string(table.reason) << "\n";
     return;
   }
   std::cout << "table: " << table.pieces << " pieces of degree " << table.degree << ", error at most " << table.max_error

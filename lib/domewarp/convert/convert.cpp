@@ -44,10 +44,15 @@ std::vector<Light> lights_in_eye_space(const Scene& scene, const View& view, std
 
 } // namespace
 
+std::size_t expected_points(const Scene& scene, const ConvertOptions& options) {
+  constexpr std::size_t per_vertex = 10;
+  return count_vertices(scene) * (options.refine.subdivision == Subdivision::none ? 1 : per_vertex);
+}
+
 Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report, const Progress& progress) {
   check_raster(options.raster);
   const Clock::time_point start = Clock::now();
-  const Display display = make_display(options.surface, options.raster, options.method);
+  const Display display = make_display(options.surface, options.raster, options.method, expected_points(scene, options));
   const double map_ms = ms_since(start);
   Scene warped = convert(scene, options, display, report, progress);
   report.map_ms = map_ms;
@@ -63,6 +68,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   report.dropped_extensions = scene.dropped_extensions;
   report.view = resolve_view(scene, options.view);
   note_display(display, report);
+  report.expected_points = expected_points(scene, options);
 
   tell(progress, "refine");
   Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);

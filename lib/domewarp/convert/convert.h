@@ -22,6 +22,10 @@ struct ConvertOptions {
   bool unlit = false;           ///< mark every material KHR_materials_unlit
 };
 
+/// How many points mapping the scene takes at least, about: what Method::automatic goes by. Refinement evaluates the map
+/// at 3 to 50 points for each vertex of the source (the bundled scenes; a box whose sides fill the view).
+std::size_t expected_points(const Scene& scene, const ConvertOptions& options);
+
 /// What a conversion did; `to_json` (report.h) is its written form.
 struct ConvertReport {
   RefineReport refine;
@@ -30,6 +34,7 @@ struct ConvertReport {
   RadiusLimit r_max_limit = RadiusLimit::screen;
   std::vector<Branch> branches;
   std::vector<TableReport> tables; ///< one per branch
+  std::size_t expected_points = 0; ///< what Method::automatic went by
   std::vector<std::string> warnings;
   std::vector<std::string> dropped_extensions;
   double map_ms = 0;

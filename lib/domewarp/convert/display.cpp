@@ -8,15 +8,17 @@
 
 namespace domewarp {
 
-Display make_display(const SurfaceOptions& options, const Raster& raster, Method method) {
+Display make_display(const SurfaceOptions& options, const Raster& raster, Method method, std::size_t points) {
   Surface surface(options, screen_radius(raster));
-  ImageMap map = make_image_map(surface, method);
+  ImageMap map = make_image_map(surface, method, points);
   return {std::move(surface), std::move(map)};
 }
 
-std::shared_ptr<const Display> DisplayCache::find(const SurfaceOptions& options, const Raster& raster, Method method) {
+std::shared_ptr<const Display> DisplayCache::find(const SurfaceOptions& options, const Raster& raster, Method method,
+                                                  std::size_t points) {
+  const bool few = points < table_pays_from;
   const std::string key = to_json(options) + std::to_string(raster.width) + "x" + std::to_string(raster.height) +
-                          std::to_string(static_cast<int>(method));
+                          std::to_string(static_cast<int>(method)) + (few ? " few" : "");
   std::shared_ptr<Entry> entry;
   {
     const std::lock_guard lock(guard_);
@@ -25,7 +27,7 @@ std::shared_ptr<const Display> DisplayCache::find(const SurfaceOptions& options,
     entry = found;
   }
   const std::lock_guard lock(entry->making);
-  if (!entry->display) entry->display = std::make_shared<const Display>(make_display(options, raster, method));
+  if (!entry->display) entry->display = std::make_shared<const Display>(make_display(options, raster, method, points));
   return entry->display;
 }
 

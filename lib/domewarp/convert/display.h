@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,14 +19,16 @@ struct Display {
   ImageMap map;
 };
 
+/// @param points how many will be mapped, for Method::automatic
 /// @throws Error(usage) when the surface cannot be used (see Surface)
-Display make_display(const SurfaceOptions& options, const Raster& raster, Method method);
+Display make_display(const SurfaceOptions& options, const Raster& raster, Method method, std::size_t points = many_points);
 
 /// Displays that many conversions share. Safe to use from several threads.
 class DisplayCache {
 public:
   /// The display for these options, made when it is asked for first; errors are those of `make_display`, each time.
-  std::shared_ptr<const Display> find(const SurfaceOptions& options, const Raster& raster, Method method);
+  std::shared_ptr<const Display> find(const SurfaceOptions& options, const Raster& raster, Method method,
+                                      std::size_t points);
 
 private:
   struct Entry {

@@ -14,7 +14,8 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
   ConvertReport report;
   Scene warped;
   if (displays != nullptr) {
-    const auto display = displays->find(options.convert.surface, options.convert.raster, options.convert.method);
+    const auto display = displays->find(options.convert.surface, options.convert.raster, options.convert.method,
+                                        expected_points(scene, options.convert));
     warped = convert(scene, options.convert, *display, report, progress);
   } else {
     warped = convert(scene, options.convert, report, progress);

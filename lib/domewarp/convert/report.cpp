@@ -26,9 +26,27 @@ Json branches_json(const ConvertReport& report) {
                         {"theta_deg", {degrees(branch.theta_low), degrees(branch.theta_high)}},
                         {"orientation", branch.orientation},
                         {"method", table.used ? "lut" : "direct"},
+                        {"method_reason", to_string(table.reason)},
                         {"table", {{"pieces", table.pieces}, {"degree", table.degree}, {"max_error", table.max_error}, {"build_ms", table.build_ms}}}});
   }
   return branches;
+}
+
+/// What was asked for and what answered; branch by branch under "surface".
+Json method_json(const ConvertReport& report, const ConvertOptions& options) {
+  std::size_t tables = 0;
+  for (const TableReport& table : report.tables) tables += table.used;
+  return {{"asked", to_string(options.method)},
+          {"used", tables == 0 ? "direct" : tables == report.tables.size() ? "lut" : "lut and direct"},
+          {"expected_points", report.expected_points}};
+}
+
+/// "lut" or "direct", and why where the choice was ours.
+std::string method_text(const ConvertReport& report, const ConvertOptions& options) {
+  std::string text = method_json(report, options)["used"];
+  for (const TableReport& table : report.tables)
+    if (!table.used && table.reason != TableReason::direct_asked) return text + ": " + to_string(table.reason);
+  return text;
 }
 
 std::size_t culled(const SkipReport& skipped) {
@@ -94,6 +112,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
                          {"points_computed", refine.isotropic.points_computed},
                          {"divisions", refine.isotropic.divisions},
                          {"invisible", refine.isotropic.invisible}};
+  json["method"] = method_json(report, options);
   json["time_ms"] = {{"map", report.map_ms},
                      {"topology", refine.soup_ms},
                      {"refine", refine.levels_ms},
@@ -128,6 +147,7 @@ std::string to_text(const ConvertReport& report, const ConvertOptions& options) 
          << refine.error_px_mean << " px; depth " << 100 * refine.depth_error_max << " %\n"
          << "cracks      " << refine.open_edges << " open edges that the source did not have; " << refine.t_junctions_in
          << " T-junctions of the source mended\n";
+  text << "map         " << method_text(report, options) << "\n";
   text << std::fixed << std::setprecision(0) << "time        " << report.total_ms << " ms, peak memory " << report.peak_memory_mb << " MB\n";
   for (const std::string& limit : refine.limits_hit) text << "stopped by  " << limit << "\n";
   return text.str();

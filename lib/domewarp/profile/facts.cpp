@@ -102,10 +102,12 @@ std::string describe(const Branch& branch) {
          brief(branch.radius_low) + " to " + brief(branch.radius_high) + (branch.orientation < 0 ? ", mirrored" : "");
 }
 
-std::string describe(const BlindCone& blind) {
+std::string describe_blind(const Surface& surface) {
+  const BlindCone blind = surface.blind();
   if (blind.theta_low < blind.theta_high)
     return "theta " + degrees(blind.theta_low) + " to " + degrees(blind.theta_high) + " degrees";
-  return "no direction, but perhaps straight behind";
+  const auto reaches_behind = [](const Branch& branch) { return branch.theta_high >= std::numbers::pi; };
+  return std::ranges::any_of(surface.branches(), reaches_behind) ? "no direction" : "straight behind only";
 }
 
 std::string describe(const Kink& kink) {
@@ -122,7 +124,7 @@ std::vector<std::string> summarise(const Surface& surface) {
   };
   for (std::size_t i = 0; i < surface.branches().size(); ++i)
     lines.push_back("branch " + std::to_string(i + 1) + ": " + describe(surface.branches()[i]));
-  lines.push_back("blind: " + describe(surface.blind()));
+  lines.push_back("blind: " + describe_blind(surface));
   std::size_t joints = 0;
   for (const Kink& kink : surface.kinks()) {
     if (kink.kind != KinkKind::joint) lines.push_back(describe(kink));

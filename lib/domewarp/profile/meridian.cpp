@@ -15,12 +15,6 @@ constexpr double largest = std::numeric_limits<double>::max();
 
 double finite(double x) { return std::isnan(x) ? 0 : std::clamp(x, -largest, largest); }
 
-// tan(theta / 2) mapped to [0, 1].
-double half_angle_index(double s, double c) {
-  const double a = 1 + std::abs(c);
-  return c >= 0 ? s / (s + a) : a / (a + s);
-}
-
 struct Slopes {
   double theta, d, d2;
 };
@@ -35,6 +29,11 @@ Slopes slopes_at(const Jet<double>& f, double r) {
 bool is_steep(const Jet<double>& f) { return !(std::abs(f.d) < 1e6 && std::isfinite(f.dd)); }
 
 } // namespace
+
+double half_angle_index(double s, double c) {
+  const double a = 1 + std::abs(c);
+  return c >= 0 ? s / (s + a) : a / (a + s);
+}
 
 double compensate(double distance, double r, double z) {
   return std::isinf(distance) ? r : r * (distance / (z + distance));
@@ -81,9 +80,7 @@ Vec2 curve_point(const Curve& curve, const Span& span, double s, double c) {
     const Jet<double> f = differentiate(curve, r);
     return ValueAndSlope<double>{f.v * s - r * c, f.d * s - c};
   };
-  const double low = half_angle_index(std::sin(span.theta_at_low), std::cos(span.theta_at_low));
-  const double high = half_angle_index(std::sin(span.theta_at_high), std::cos(span.theta_at_high));
-  const double part = (half_angle_index(s, c) - low) / (high - low);
+  const double part = (half_angle_index(s, c) - span.index_at_low) / (span.index_at_high - span.index_at_low);
   const double guess = span.r_low + (span.r_high - span.r_low) * part;
   const double r = find_root(function, span.r_low, span.r_high, guess, sign);
   // Near a vertical tangent f(r) would magnify the rounding of r; the ray knows z as well.

@@ -107,6 +107,8 @@ Span make_span(const QuadPoint& low, const QuadPoint& high) {
   const auto rounded = [](const Quad& x) { return static_cast<double>(x); };
   Span span{rounded(low.r), rounded(high.r), rounded(low.z), rounded(high.z), angle_of(low), angle_of(high), 1, low, high};
   if (span.theta_at_high < span.theta_at_low) span.orientation = -1;
+  span.index_at_low = half_angle_index(std::sin(span.theta_at_low), std::cos(span.theta_at_low));
+  span.index_at_high = half_angle_index(std::sin(span.theta_at_high), std::cos(span.theta_at_high));
   return span;
 }
 

@@ -18,7 +18,11 @@ struct Span {
   double theta_at_low = 0, theta_at_high = 0;
   int orientation = 1;
   QuadPoint low{0, 0}, high{0, 0}; ///< the ends once more
+  double index_at_low = 0, index_at_high = 0; ///< their half_angle_index
 };
+
+/// tan(theta / 2) mapped to [0, 1], for a direction with sine s and cosine c.
+double half_angle_index(double s, double c);
 
 /// What a Surface consists of.
 struct SurfaceParts {

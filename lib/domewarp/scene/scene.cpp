@@ -17,6 +17,13 @@ std::size_t count_triangles(const Scene& scene) {
   return count;
 }
 
+std::size_t count_vertices(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Instance& instance : scene.instances)
+    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) count += primitive.positions.size();
+  return count;
+}
+
 const Attribute* find_attribute(const Primitive& primitive, const std::string& name) {
   for (const Attribute& attribute : primitive.attributes)
     if (attribute.name == name) return &attribute;

@@ -134,6 +134,9 @@ struct Scene {
 /// The triangles that are drawn, instances multiplied out.
 std::size_t count_triangles(const Scene& scene);
 
+/// The vertices of what is drawn, instances multiplied out.
+std::size_t count_vertices(const Scene& scene);
+
 /// The attribute of this name, or null.
 const Attribute* find_attribute(const Primitive& primitive, const std::string& name);
 

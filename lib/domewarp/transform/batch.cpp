@@ -156,10 +156,12 @@ BatchMap::BatchMap(const Surface& surface, const BatchOptions& options) {
   const bool direct = options.method == Method::direct || few;
   std::optional<FloatFit> fit;
   if (!direct) fit = make_float_table(surface, options.max_error);
-  impl->exact = make_image_map(surface, direct || fit ? Method::direct : Method::table);
+  impl->exact = make_image_map(surface, fit ? Method::direct : options.method, options.points);
+  for (const BranchMap& branch : impl->exact.branches)
+    if (!fit && !branch.table().used) impl->report = {false, true, branch.table().reason};
   if (fit) {
     impl->table = fit->table;
-    impl->report = {true, fit->table.pieces, FloatTable::degree, fit->predicted_error, fit->weight_error, 0};
+    impl->report = {true, false, TableReason::used, fit->table.pieces, FloatTable::degree, fit->predicted_error, fit->weight_error, 0};
   }
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   impl->report.build_ms = elapsed.count();

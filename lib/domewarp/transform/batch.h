@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <memory>
 
 #include "domewarp/profile/surface.h"
@@ -35,24 +34,22 @@ enum class BatchOutput {
 };
 
 struct BatchOptions {
-  /// Automatic: the table from `table_pays_from` points on.
-  Method method = Method::automatic;
+  Method method = Method::automatic; ///< automatic: by `points`
   /// Predicted error of x' and y' that the table may have, image units (0.01 pixels of 4096 rows); tables grow until it
   /// is a fifth of that.
   double max_error = 5e-6;
-  std::size_t points = std::numeric_limits<std::size_t>::max(); ///< how many will be mapped
+  std::size_t points = many_points; ///< how many will be mapped
 };
 
 struct BatchReport {
   bool vectorised = false;    ///< false: points are mapped one by one in double precision
+  bool direct = false;        ///< not vectorised, and at least one branch has no table
+  TableReason reason = TableReason::used; ///< why it is direct
   int pieces = 0, degree = 0; ///< of the float table
   double predicted_error = 0; ///< of x' and y', image units
   double weight_error = 0;    ///< relative, of the weight g
   double build_ms = 0;
 };
-
-/// Points from which on building a table takes less time than it saves.
-inline constexpr std::size_t table_pays_from = 100;
 
 /// The map of whole arrays of single-precision points: at the speed of a copy where the surface is one branch that rises
 /// from the axis and a float table of it is exact enough, else point by point. What a point maps to depends on nothing

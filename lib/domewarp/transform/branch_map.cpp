@@ -44,8 +44,8 @@ struct BranchMap::Impl {
     const auto start = std::chrono::steady_clock::now();
     table = make_radial_table(surface, index);
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    report = {table.qualifies, 0, RadialTable::degree, table.max_error, elapsed.count()};
-    for (const auto& segment : table.segments) report.pieces += segment.pieces;
+    const TableReason reason = table.qualifies ? TableReason::used : TableReason::inexact;
+    report = {table.qualifies, reason, static_cast<int>(table.pieces.size()), RadialTable::degree, table.max_error, elapsed.count()};
     if (!table.qualifies) table = {};
   }
 
@@ -85,12 +85,23 @@ struct BranchMap::Impl {
   bool is_above(double u) const { return u > u_high + rounding; }
 };
 
-BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method) {
+BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method, std::size_t points) {
   const Branch& range = surface.branches()[branch];
   auto impl = std::make_unique<Impl>(Impl{surface, branch, range, mean_slope(surface, branch)});
-  if (method != Method::direct) impl->tabulate();
+  const bool few = method == Method::automatic && points < table_pays_from;
+  if (few) impl->report.reason = TableReason::few_points;
+  if (method != Method::direct && !few) impl->tabulate();
   impl->find_ends();
   impl_ = std::move(impl);
+}
+
+const char* to_string(TableReason reason) {
+  switch (reason) {
+  case TableReason::used: return "a table is within 1e-10 image units";
+  case TableReason::direct_asked: return "the direct method was asked for";
+  case TableReason::few_points: return "fewer points than a table pays for";
+  default: return "no table is within 1e-10 image units";
+  }
 }
 
 BranchMap::~BranchMap() = default;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +12,13 @@
 
 namespace domewarp {
 
+/// How points are mapped. Automatic: by tables where at least `table_pays_from` points are mapped, else by the direct method.
 enum class Method { automatic, direct, table };
+const char* to_string(Method method); ///< "auto", "direct", "lut"
+
+/// Points from which on building a table takes less time than it saves (measured: `domewarp-bench map`, "crossing").
+inline constexpr std::size_t table_pays_from = 100;
+inline constexpr std::size_t many_points = std::numeric_limits<std::size_t>::max();
 
 enum class PointState { visible, extended, blind };
 const char* to_string(PointState state);
@@ -28,9 +36,19 @@ struct RadialFactors {
   double g = 1;                  ///< weight of perspective output, w = rho g: |R'(theta)|^(-1/2), kept within bounds
 };
 
+/// Why a table is used, or is not.
+enum class TableReason {
+  used,
+  direct_asked, ///< Method::direct
+  few_points,   ///< Method::automatic and fewer points than `table_pays_from`
+  inexact,      ///< no table is within 1e-10 of the direct method
+};
+const char* to_string(TableReason reason);
+
 /// How one branch was tabulated.
 struct TableReport {
   bool used = false;             ///< false: the direct method answers
+  TableReason reason = TableReason::direct_asked;
   int pieces = 0;
   int degree = 0;
   double max_error = 0;          ///< of R, image units, measured against the direct method
@@ -46,7 +64,8 @@ public:
   /// q^2 -> (q^2 + e^2) / (1 + q^2 e^2). Smooth, 1 where R' is constant.
   static constexpr double weight_epsilon = 0.05;
 
-  BranchMap(const Surface& surface, std::size_t branch, Method method);
+  /// @param points how many will be mapped, for Method::automatic
+  BranchMap(const Surface& surface, std::size_t branch, Method method, std::size_t points = many_points);
   ~BranchMap();
   BranchMap(BranchMap&&) noexcept;
   BranchMap& operator=(BranchMap&&) noexcept;
@@ -79,7 +98,7 @@ private:
 struct ImageMap {
   std::vector<BranchMap> branches;
 };
-ImageMap make_image_map(const Surface& surface, Method method);
+ImageMap make_image_map(const Surface& surface, Method method, std::size_t points = many_points);
 
 /// Where an eye-space point appears: on the first branch (nearest along the ray) that contains its direction, else by
 /// the tangent extension, else blind. This is what `domewarp project` prints.

@@ -32,10 +32,18 @@ const char* to_string(PointState state) {
   }
 }
 
-ImageMap make_image_map(const Surface& surface, Method method) {
+const char* to_string(Method method) {
+  switch (method) {
+  case Method::automatic: return "auto";
+  case Method::direct: return "direct";
+  default: return "lut";
+  }
+}
+
+ImageMap make_image_map(const Surface& surface, Method method, std::size_t points) {
   ImageMap map;
   map.branches.reserve(surface.branches().size());
-  for (std::size_t i = 0; i < surface.branches().size(); ++i) map.branches.emplace_back(surface, i, method);
+  for (std::size_t i = 0; i < surface.branches().size(); ++i) map.branches.emplace_back(surface, i, method, points);
   return map;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "domewarp/transform/weight.h"
@@ -17,18 +18,17 @@ using Grading = RadialTable::Grading;
 
 constexpr int degree = RadialTable::degree;
 constexpr int nodes = degree + 1;
-constexpr std::size_t piece_size = 2 * nodes;
 
 constexpr double allowed_error = 1e-10; // of R: what the map promises
-constexpr double even_goal = 1e-13;     // costs one doubling more than the promise, and lets round trips close
-constexpr double graded_goal = 1e-13;   // beside a fold pieces shrink towards it
+constexpr double goal = 1e-13;          // costs one halving more than the promise, and lets round trips close
+constexpr double index_rounding = 4e-16; // of u, from a direction: what it moves R by, no table can be exact to
 constexpr double least_share = 0.1;     // of the error of R / u counts even at u = 0: K must hold near the axis
 constexpr double weight_goal = 1e-9;
-constexpr int piece_limit = 1024;
+constexpr int level_limit = 10; // of halvings
 constexpr std::size_t segment_limit = 1024;
 constexpr double fold_margin = 3e-5; // in the root: nearer, u's own rounding moves R by more than the promise
 
-// Position in the segment that pieces divide evenly, 0 to 1, and back.
+// Place in the segment, 0 to 1, and back.
 double position(const Segment& segment, double u) {
   switch (segment.grading) {
   case Grading::to_low: return std::sqrt(std::max(0.0, (u - segment.u_low) * segment.scale));
@@ -53,6 +53,7 @@ bool is_beside_fold(const Segment& segment, double v) {
 
 struct Sample {
   double u, ratio, g;
+  double noise; // of R
 };
 
 class Sampler {
@@ -64,7 +65,7 @@ public:
     const double n = u, o = 1 - u, square = n * n + o * o;
     const double s = 2 * n * o / square, c = (o - n) * (o + n) / square;
     const RadialJet jet = surface_.radial(branch_, std::atan2(s, c));
-    return {u, u > 0 ? jet.r / u : 2 * jet.dr, weight(jet.dr, mean_)};
+    return {u, u > 0 ? jet.r / u : 2 * jet.dr, weight(jet.dr, mean_), index_rounding * std::abs(jet.dr) * 2 / square};
   }
 
 private:
@@ -97,27 +98,26 @@ Basis make_basis() {
   return basis;
 }
 
-void fit_piece(const Sampler& sampler, const Segment& segment, int piece, double* coefficients) {
+RadialTable::Piece fit_piece(const Sampler& sampler, const Segment& segment, double low, double width) {
   static const Basis basis = make_basis();
   std::array<Sample, nodes> samples;
-  for (int j = 0; j < nodes; ++j)
-    samples[j] = sampler.at(index_at(segment, (piece + 0.5 * (1 + basis.x[j])) / segment.pieces));
+  for (int j = 0; j < nodes; ++j) samples[j] = sampler.at(index_at(segment, low + 0.5 * width * (1 + basis.x[j])));
+  RadialTable::Piece piece{low, 2 / width};
+  double* coefficient = piece.coefficients.data();
   for (int power = degree; power >= 0; --power) {
     double ratio = 0, g = 0;
     for (int j = 0; j < nodes; ++j) {
       ratio += basis.inverse[power][j] * samples[j].ratio;
       g += basis.inverse[power][j] * samples[j].g;
     }
-    *coefficients++ = ratio;
-    *coefficients++ = g;
+    *coefficient++ = ratio;
+    *coefficient++ = g;
   }
+  return piece;
 }
 
-struct PieceError {
-  double radius = 0, g = 0;
-};
-
-Vec2 evaluate_piece(const double* c, double x) {
+Vec2 evaluate_piece(const RadialTable::Piece& piece, double x) {
+  const double* const c = piece.coefficients.data();
   double ratio = c[0], g = c[1];
   for (int i = 1; i < nodes; ++i) {
     ratio = ratio * x + c[2 * i];
@@ -126,53 +126,66 @@ Vec2 evaluate_piece(const double* c, double x) {
   return {ratio, g};
 }
 
+struct PieceError {
+  double radius = 0;
+  bool met = true; ///< the goals
+};
+
 // The error of a polynomial that interpolates peaks between its nodes and at its ends.
-PieceError measure_piece(const Sampler& sampler, const Segment& segment, int piece, const double* coefficients) {
+// @param thorough false: stop at the first place that misses a goal
+PieceError measure_piece(const Sampler& sampler, const Segment& segment, const RadialTable::Piece& piece, double size, bool thorough) {
   PieceError error;
-  for (int j = 0; j <= nodes; ++j) {
-    const double x = -std::cos(std::numbers::pi * j / nodes);
-    const double v = (piece + 0.5 * (1 + x)) / segment.pieces;
+  for (int j = 0; j <= nodes && (error.met || thorough); ++j) {
+    const double x = -std::cos(std::numbers::pi * j / nodes), v = piece.low + (1 + x) / piece.scale;
     if (is_beside_fold(segment, v)) continue;
     const Sample sample = sampler.at(index_at(segment, v));
-    const Vec2 value = evaluate_piece(coefficients, x);
+    const Vec2 value = evaluate_piece(piece, x);
+    const double radius = std::abs(value.x - sample.ratio) * std::max(sample.u, least_share);
+    error.radius = std::max(error.radius, radius);
+    error.met = error.met && radius <= goal * size + sample.noise;
     // g jumps at a kink, and rounding may put the segment's very end beyond it.
-    if (v > 0 && v < 1) error.g = std::max(error.g, std::abs(value.y / sample.g - 1));
-    error.radius = std::max(error.radius, std::abs(value.x - sample.ratio) * std::max(sample.u, least_share));
+    if (v > 0 && v < 1) error.met = error.met && std::abs(value.y / sample.g - 1) <= weight_goal;
   }
   return error;
 }
 
-// Fits all pieces of a segment; gives up at the first piece that misses the goal unless `last`.
-bool fit_segment(const Sampler& sampler, const Segment& segment, double goal, bool last,
-                 std::vector<double>& coefficients, PieceError& error) {
-  coefficients.resize(piece_size * static_cast<std::size_t>(segment.pieces));
-  error = {};
-  for (int piece = 0; piece < segment.pieces; ++piece) {
-    double* const target = coefficients.data() + piece_size * static_cast<std::size_t>(piece);
-    fit_piece(sampler, segment, piece, target);
-    const PieceError here = measure_piece(sampler, segment, piece, target);
-    error = {std::max(error.radius, here.radius), std::max(error.g, here.g)};
-    const bool met = here.radius <= goal && here.g <= weight_goal;
-    if (!met && !(last && here.radius <= allowed_error)) return false;
-  }
-  return true;
-}
+// Halves one segment until its pieces are exact, from left to right.
+class SegmentBuilder {
+public:
+  SegmentBuilder(RadialTable& table, const Sampler& sampler, const Segment& segment, double size)
+      : table_(table), sampler_(sampler), segment_(segment), size_(size) {}
 
-bool add_segment(RadialTable& table, const Sampler& sampler, Segment segment, double size) {
-  const double goal = (segment.grading == Grading::even ? even_goal : graded_goal) * std::max(1.0, size);
-  std::vector<double> coefficients;
-  PieceError error;
-  segment.first = table.coefficients.size() / piece_size;
-  for (segment.pieces = 1; segment.pieces <= piece_limit; segment.pieces *= 2) {
-    if (!fit_segment(sampler, segment, goal, segment.pieces == piece_limit, coefficients, error)) continue;
-    table.max_error = std::max(table.max_error, error.radius);
-    table.coefficients.insert(table.coefficients.end(), coefficients.begin(), coefficients.end());
-    table.segments.push_back(segment);
+  bool build() {
+    const std::size_t first = table_.pieces.size();
+    if (!add(0, 1, 0)) return false;
+    segment_.cells = std::ldexp(1.0, deepest_);
+    segment_.first_cell = table_.cells.size();
+    for (std::size_t i = first; i < table_.pieces.size(); ++i) {
+      const auto cells = static_cast<std::size_t>(segment_.cells * 2 / table_.pieces[i].scale);
+      table_.cells.insert(table_.cells.end(), cells, static_cast<std::uint32_t>(i));
+    }
+    table_.segments.push_back(segment_);
     return true;
   }
-  table.max_error = std::max(table.max_error, error.radius);
-  return false;
-}
+
+private:
+  bool add(double low, double width, int level) {
+    const RadialTable::Piece piece = fit_piece(sampler_, segment_, low, width);
+    const bool last = level == level_limit;
+    const PieceError error = measure_piece(sampler_, segment_, piece, size_, last);
+    if (!error.met && !last) return add(low, 0.5 * width, level + 1) && add(low + 0.5 * width, 0.5 * width, level + 1);
+    table_.max_error = std::max(table_.max_error, error.radius);
+    table_.pieces.push_back(piece);
+    deepest_ = std::max(deepest_, level);
+    return error.radius <= allowed_error;
+  }
+
+  RadialTable& table_;
+  const Sampler& sampler_;
+  Segment segment_;
+  double size_;
+  int deepest_ = 0;
+};
 
 // Ends of smooth stretches in u. A branch between two folds is cut in its middle, so that each part grades to one.
 std::vector<double> stretch_ends(const Surface& surface, std::size_t branch) {
@@ -193,15 +206,18 @@ RadialTable make_radial_table(const Surface& surface, std::size_t branch) {
   // R falls to 0 on the backward axis only on surfaces behind the eye; K = R / sin(theta) would be lost in rounding.
   const bool closes_behind = range.theta_high >= std::numbers::pi && range.radius_high == 0;
   const std::vector<double> ends = stretch_ends(surface, branch);
-  if (closes_behind || ends.size() > segment_limit) return table;
+  if (closes_behind || ends.size() > segment_limit) {
+    table.max_error = std::numeric_limits<double>::infinity();
+    return table;
+  }
   const Sampler sampler(surface, branch);
-  const double size = std::max(range.radius_low, range.radius_high);
+  const double size = std::max({1.0, range.radius_low, range.radius_high});
   table.qualifies = true;
   for (std::size_t i = 0; i + 1 < ends.size() && table.qualifies; ++i) {
     Segment segment{ends[i], ends[i + 1], 1 / (ends[i + 1] - ends[i])};
     if (i == 0 && range.fold_low) segment.grading = Grading::to_low;
     if (i + 2 == ends.size() && range.fold_high) segment.grading = Grading::to_high;
-    table.qualifies = std::isfinite(segment.scale) && add_segment(table, sampler, segment, size);
+    table.qualifies = std::isfinite(segment.scale) && SegmentBuilder(table, sampler, segment, size).build();
   }
   return table;
 }
@@ -213,11 +229,10 @@ TableValue look_up(const RadialTable& table, double u) {
                                        [](double value, const Segment& other) { return value < other.u_low; });
     segment = &*(next - 1);
   }
-  const double v = position(*segment, u);
-  const double t = std::clamp(v, 0.0, 1.0) * segment->pieces;
-  const int piece = std::min(static_cast<int>(t), segment->pieces - 1);
-  const std::size_t at = piece_size * (segment->first + static_cast<std::size_t>(piece));
-  const Vec2 value = evaluate_piece(table.coefficients.data() + at, 2 * (t - piece) - 1);
+  const double v = position(*segment, u), place = std::clamp(v, 0.0, 1.0);
+  const auto cell = static_cast<std::size_t>(std::min(place * segment->cells, segment->cells - 1));
+  const RadialTable::Piece& piece = table.pieces[table.cells[segment->first_cell + cell]];
+  const Vec2 value = evaluate_piece(piece, (place - piece.low) * piece.scale - 1);
   return {value.x, value.y, !is_beside_fold(*segment, v)};
 }
 

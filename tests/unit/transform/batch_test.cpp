@@ -258,7 +258,7 @@ TEST_F(Batch, WhatHasNoDirectionHasNoImage) {
 TEST_F(Batch, SurfacesWithoutATableAreMappedOneByOne) {
   const Surface doubled = curve_surface("-0.1*r^4+2.25*r^2+0.2*cos(8*r)+1");
   const BatchMap batch(doubled);
-  EXPECT_FALSE(batch.report().vectorised);
+  EXPECT_FALSE(batch.report().vectorised || batch.report().direct);
   const Cloud in = random_directions(2000, 10);
   EXPECT_LT(largest_error(doubled, in, map(batch, in)), 2e-7);
   BatchOptions options;
@@ -266,7 +266,8 @@ TEST_F(Batch, SurfacesWithoutATableAreMappedOneByOne) {
   EXPECT_FALSE(BatchMap(curve_surface("1-r^2"), options).report().vectorised);
   options = {};
   options.points = 99;
-  EXPECT_FALSE(BatchMap(curve_surface("1-r^2"), options).report().vectorised);
+  const BatchReport few = BatchMap(curve_surface("1-r^2"), options).report();
+  EXPECT_TRUE(!few.vectorised && few.direct && few.reason == TableReason::few_points);
   options.points = 100;
   EXPECT_TRUE(BatchMap(curve_surface("1-r^2"), options).report().vectorised);
 }

@@ -63,10 +63,35 @@ TEST(BranchMap, EveryThesisCurveGetsATable) {
   }
 }
 
+TEST(BranchMap, AutomaticUsesATableWhereManyPointsComeAndSaysWhyNot) {
+  const Surface surface = curve_surface("1-r^2");
+  const auto report = [&](Method method, std::size_t points) { return BranchMap(surface, 0, method, points).table(); };
+  EXPECT_FALSE(report(Method::automatic, table_pays_from - 1).used);
+  EXPECT_EQ(report(Method::automatic, table_pays_from - 1).reason, TableReason::few_points);
+  EXPECT_TRUE(report(Method::automatic, table_pays_from).used);
+  EXPECT_EQ(report(Method::automatic, table_pays_from).reason, TableReason::used);
+  EXPECT_TRUE(report(Method::table, 1).used);
+  EXPECT_FALSE(report(Method::direct, many_points).used);
+  EXPECT_EQ(report(Method::direct, 1).reason, TableReason::direct_asked);
+}
+
+// Halving goes on only where it has to: near-grazing rims and folds were tabulated in 128 and 4120 even pieces.
+TEST(BranchMap, TablesAreSmall) {
+  for (const Surface& surface : many_surfaces())
+    for (std::size_t i = 0; i < surface.branches().size(); ++i) {
+      const BranchMap map(surface, i, Method::table);
+      const TableReport& table = map.table();
+      const bool closes_behind = map.branch().theta_high >= pi && map.branch().radius_high == 0;
+      EXPECT_EQ(table.used, !closes_behind) << describe(surface);
+      EXPECT_LE(table.pieces, 64) << describe(surface) << " branch " << i;
+    }
+}
+
 TEST(BranchMap, ATableThatMissesThePromiseIsNotUsedAndSaysSo) {
   const Surface surface = lens_surface(Lens::stereographic, 359, 1.0);
   const BranchMap map(surface, 0, Method::table);
   EXPECT_FALSE(map.table().used);
+  EXPECT_EQ(map.table().reason, TableReason::inexact);
   EXPECT_GT(map.table().max_error, 1e-10);
   const Vec3 p = towards(3, 1);
   EXPECT_EQ(map.factors(p).k, BranchMap(surface, 0, Method::direct).factors(p).k);
