@@ -15,6 +15,7 @@
 #include "benches.h"
 #include "domewarp/core/parallel.h"
 #include "domewarp/transform/batch.h"
+#include "map_tables.h"
 #include "thesis_methods.h"
 #include "timing.h"
 
@@ -139,10 +140,11 @@ std::vector<double> time_ways(const std::vector<Way>& ways, const Cloud& in, int
 
 struct Row {
   std::string curve;
-  double points;
+  double r_max, points;
   std::string method;
   double table_size, ns, ratio;
   Error error;
+  bool is_front = false; ///< no other method of the group is both faster and more exact
 };
 
 std::vector<Row> measure_ways(const Surface& surface, const std::vector<Way>& ways, const Cloud& in, Cloud& out, double copy_ns, int rounds) {
@@ -155,16 +157,25 @@ std::vector<Row> measure_ways(const Surface& surface, const std::vector<Way>& wa
       ways[i].work();
       error = measure(surface, in, out, ways[i].is_split);
     }
-    rows.push_back({surface.options().curve, static_cast<double>(in.count()), ways[i].name, ways[i].table_size, times[i], times[i] / copy_ns, error});
+    rows.push_back({surface.options().curve, surface.r_max(), static_cast<double>(in.count()), ways[i].name, ways[i].table_size, times[i], times[i] / copy_ns, error});
   }
   choose(0);
   return rows;
 }
 
-void measure_curve(const std::string& text, std::size_t count, int rounds, std::vector<Row>& rows) {
+/// The Pareto front of a group: rows of one curve, r_max and number of points.
+void mark_front(std::vector<Row>& group) {
+  const auto beats = [](const Row& a, const Row& b) {
+    return a.ns <= b.ns && a.error.most <= b.error.most && (a.ns < b.ns || a.error.most < b.error.most);
+  };
+  for (Row& row : group)
+    row.is_front = std::isfinite(row.error.most) && std::ranges::none_of(group, [&](const Row& other) { return beats(other, row); });
+}
+
+void measure_curve(const std::string& text, double r_max, std::size_t count, int rounds, std::vector<Row>& rows) {
   SurfaceOptions options;
   options.curve = text;
-  const Surface surface(options, 1);
+  const Surface surface(options, r_max);
   const Curve curve = make_curve(text);
   BatchOptions exactly, directly;
   exactly.max_error = 0; // no float table is that exact
@@ -176,38 +187,64 @@ void measure_curve(const std::string& text, std::size_t count, int rounds, std::
   std::vector<Way> ways{{"copy", 0, [&] { copy(in.values, out.values); }, true, false},
                         {"copy, streaming", 0, [&] { copy_streaming(in.values, out.values); }, true, false}};
   add_batches(ways, map, in, out);
-  std::vector<Row> fast = measure_ways(surface, ways, in, out, 1, rounds);
-  const double copy_ns = std::min(fast[0].ns, fast[1].ns);
-  for (Row& row : fast) row.ratio = row.ns / copy_ns;
+  std::vector<Row> group = measure_ways(surface, ways, in, out, 1, rounds);
+  const double copy_ns = std::min(group[0].ns, group[1].ns);
+  for (Row& row : group) row.ratio = row.ns / copy_ns;
 
   Cloud few = random_directions(std::max<std::size_t>(count / 100, 1000)), few_out = few;
   std::vector<Way> slow;
   add_slow(slow, curve, thesis, surface.r_max(), exact_table, direct, few, few_out);
   const std::vector<Row> more = measure_ways(surface, slow, few, few_out, copy_ns, std::min(rounds, 3));
-  rows.insert(rows.end(), fast.begin(), fast.end());
-  rows.insert(rows.end(), more.begin(), more.end());
+  group.insert(group.end(), more.begin(), more.end());
+  mark_front(group);
+  rows.insert(rows.end(), group.begin(), group.end());
 }
 
 Table tabulate(const std::vector<Row>& rows) {
   Table table{"map",
-              "The map on one thread, r_max 1, random directions; ratio to the faster copy with one multiplication",
-              {{"curve", "curve"}, {"points", "points"}, {"method", "method"}, {"table_bytes", "table (B)"},
+              "The map on one thread, random directions; ratio to the faster copy with one multiplication; * no other method is both faster and more exact",
+              {{"curve", "curve"}, {"r_max", "r_max"}, {"points", "points"}, {"method", "method"}, {"table_bytes", "table (B)"},
                {"ns_per_vertex", "ns/vertex"}, {"ratio_to_copy", "ratio to copy"}, {"max_error", "max error"},
-               {"rms_error", "RMS error"}, {"px_4096", "max px at 4096"}, {"px_8192", "max px at 8192"}},
+               {"rms_error", "RMS error"}, {"px_4096", "max px at 4096"}, {"px_8192", "max px at 8192"}, {"pareto", "Pareto"}},
               {}};
   for (const Row& row : rows)
-    table.rows.push_back({row.curve, row.points, row.method, row.table_size, row.ns, row.ratio, row.error.most, row.error.rms,
-                          2048 * row.error.most, 4096 * row.error.most});
+    table.rows.push_back({row.curve, row.r_max, row.points, row.method, row.table_size, row.ns, row.ratio, row.error.most, row.error.rms,
+                          2048 * row.error.most, 4096 * row.error.most, std::string(row.is_front ? "*" : "")});
+  return table;
+}
+
+/// The fastest method of the product beside those of the thesis, on the same data.
+Table compare_with_thesis(const std::vector<Row>& rows) {
+  Table table{"map_thesis",
+              "The fastest method of each group against the thesis' methods",
+              {{"curve", "curve"}, {"r_max", "r_max"}, {"points", "points"}, {"method", "method"}, {"table_speedup", "times its table's speed"},
+               {"bisection_speedup", "times its bisection's speed"}, {"table_accuracy", "times its table's accuracy"}},
+              {}};
+  const Row* best = nullptr;
+  const Row* thesis_table = nullptr;
+  for (const Row& row : rows) {
+    if (row.method == "copy") best = nullptr; // a new group
+    const bool is_ours = std::isfinite(row.error.most) && !row.method.starts_with("thesis");
+    if (is_ours && (best == nullptr || row.ns < best->ns)) best = &row;
+    if (row.method == "thesis table") thesis_table = &row;
+    if (row.method != "thesis bisection" || best == nullptr || thesis_table == nullptr) continue;
+    table.rows.push_back({row.curve, row.r_max, best->points, best->method, thesis_table->ns / best->ns, row.ns / best->ns,
+                          thesis_table->error.most / best->error.most});
+  }
   return table;
 }
 
 Plot draw(const std::vector<Row>& rows) {
   Plot plot{"map", "Time against error (" + rows.front().curve + ")", {"time per vertex (ns)", true}, {"largest error (image units)", true}, {}};
+  Series front{"Pareto front", {}};
   for (const Row& row : rows) {
     const auto is_drawn = [&](const Series& series) { return series.name == row.method; };
     if (row.curve != rows.front().curve || !std::isfinite(row.error.most) || std::ranges::any_of(plot.series, is_drawn)) continue;
     plot.series.push_back({row.method, {{row.ns, row.error.most}}, false});
+    if (row.is_front) front.points.emplace_back(row.ns, row.error.most);
   }
+  std::ranges::sort(front.points, {}, &Vec2::x);
+  plot.series.push_back(front);
   return plot;
 }
 
@@ -218,11 +255,15 @@ Result run_map_bench(const Options& options) {
   std::vector<Row> rows;
   const std::vector<std::size_t> counts = options.quick ? std::vector<std::size_t>{2000} : std::vector<std::size_t>{1'000'000, 10'000'000};
   for (const char* curve : {"1-r^2", "3-sqrt(4+6*r^2)", "-log(r+0.1)"})
-    for (const std::size_t count : counts) {
-      options.progress(std::string(curve) + ", " + std::to_string(count) + " points");
-      measure_curve(curve, count, options.quick ? 1 : count > 5'000'000 ? 9 : 30, rows);
-    }
-  return {{tabulate(rows)}, {draw(rows)}, {"Slow methods are timed on a hundredth of the points."}};
+    for (const double r_max : {1.0, 5.0 / 3})
+      for (const std::size_t count : counts) {
+        options.progress(std::string(curve) + ", " + std::to_string(count) + " points");
+        measure_curve(curve, r_max, count, options.quick ? 1 : count > 5'000'000 ? 9 : 30, rows);
+      }
+  return {{tabulate(rows), compare_with_thesis(rows), float_tables(options), double_tables(options)},
+          {draw(rows)},
+          {"Slow methods are timed on a hundredth of the points.",
+           "--method auto builds tables from " + std::to_string(table_pays_from) + " points on."}};
 }
 
 } // namespace domewarp::bench
