@@ -244,7 +244,7 @@ Plot draw(const std::vector<Row>& rows) {
     if (row.is_front) front.points.emplace_back(row.ns, row.error.most);
   }
   std::ranges::sort(front.points, {}, &Vec2::x);
-  plot.series.push_back(front);
+  plot.series.insert(plot.series.begin(), front); // the methods' markers are drawn over it
   return plot;
 }
 
