@@ -26,7 +26,7 @@ constexpr double least_share = 0.1;     // of the error of R / u counts even at 
 constexpr double weight_goal = 1e-9;
 constexpr int level_limit = 10; // of halvings
 constexpr std::size_t segment_limit = 1024;
-constexpr double fold_margin = 3e-5; // in the root: nearer, u's own rounding moves R by more than the promise
+constexpr double fold_margin = 1e-4; // in the root: nearer, u's own rounding moves R by more than the promise
 
 // Place in the segment, 0 to 1, and back.
 double position(const Segment& segment, double u) {
