@@ -120,6 +120,9 @@ Comparison compare(const Arguments& arguments) {
   RayTraceOptions rays;
   rays.near = record.near;
   rays.unlit = record.unlit;
+  rays.lights = record.baked && !scene.lights.empty();
+  rays.shadows = record.shadows;
+  rays.exposure = record.exposure;
   c.reference = ray_trace(scene, record.view, surface, record.raster, rays);
   RasterOptions raster;
   raster.unlit = record.unlit;

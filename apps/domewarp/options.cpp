@@ -182,10 +182,20 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
   add_choice<Projection>(*group, "--projection", "Camera of the written file (default perspective)",
                          {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
                          [&options](Projection projection) { options.refine.projection = projection; });
-  add_choice<bool>(*group, "--shading", "keep: normals and directional lights in eye space; unlit: colours as they are (default keep)",
-                   {{"keep", false}, {"unlit", true}}, [&options](bool unlit) { options.unlit = unlit; });
-  group->add_flag("--unlit", options.unlit, "The same as --shading unlit: mark every material KHR_materials_unlit");
+  add_choice<Shading>(*group, "--shading", "keep: normals and directional lights in eye space; unlit: colours as they are; bake: light in the colours (default keep)",
+                      {{"keep", Shading::keep}, {"unlit", Shading::unlit}, {"bake", Shading::bake}},
+                      [&options](Shading shading) { options.shading = shading; });
+  group->add_flag_callback("--unlit", [&options] { options.shading = Shading::unlit; }, "The same as --shading unlit: mark every material KHR_materials_unlit");
   group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");
+}
+
+void add_bake_options(CLI::App& app, BakeOptions& bake) {
+  auto* group = app.add_option_group("Light (--shading bake)");
+  group->add_flag("--shadows", bake.shadows, "Let opaque surfaces keep the scene's lights away");
+  add(*group, "--light-tolerance", "What the light of a white surface may be off along an edge, steps of 1/255 of sRGB (default 4)", "STEPS",
+      [&bake](const std::string& text) { bake.tolerance = parse_positive("--light-tolerance", text); });
+  add(*group, "--exposure", "Brighten the scene's lights by so many stops (default 0)", "STOPS",
+      [&bake](const std::string& text) { bake.exposure = parse_number("--exposure", text); });
 }
 
 void add_job_options(CLI::App& app, JobOptions& job) {
@@ -195,6 +205,7 @@ void add_job_options(CLI::App& app, JobOptions& job) {
   add_method_option(app, job.convert.method);
   add_quality_options(app, job.convert.refine);
   add_output_options(app, job.convert);
+  add_bake_options(app, job.convert.bake);
   app.add_flag("--draco", job.write.draco, "Compress with KHR_draco_mesh_compression, one grid for the file");
   app.add_flag("--quantize", job.write.quantize, "Store integers (KHR_mesh_quantization), one grid for the file");
   add_read_options(app, job.read);

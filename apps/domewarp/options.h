@@ -26,6 +26,8 @@ void add_method_option(CLI::App& app, Method& method);
 void add_quality_options(CLI::App& app, RefineOptions& refine);
 void add_output_options(CLI::App& app, ConvertOptions& options);
 
+void add_bake_options(CLI::App& app, BakeOptions& bake);
+
 /// All options of a conversion from file to file: those of `convert`, of `batch` and of a manifest.
 void add_job_options(CLI::App& app, JobOptions& job);
 

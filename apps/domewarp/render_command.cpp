@@ -57,7 +57,7 @@ std::optional<std::vector<PlacedLight>> lights_for(const Scene& scene, const Mat
 
 RasterOptions raster_options(const Arguments& arguments, const Progress& progress) {
   RasterOptions options;
-  options.unlit = arguments.options.unlit;
+  options.unlit = arguments.options.shading == Shading::unlit;
   options.exposure = arguments.exposure;
   options.layers = layers_for(arguments.output);
   options.supersample = arguments.supersample;
@@ -86,6 +86,8 @@ void draw(const Scene& scene, const Arguments& arguments, const Raster& raster, 
   }
   require_surface(arguments.options.surface);
   ConvertOptions convert_options = arguments.options;
+  convert_options.bake.shadows = arguments.shadows;
+  convert_options.bake.exposure = arguments.exposure;
   convert_options.refine.source_attributes = true; // lighting needs to know where a vertex came from
   options.lights = lights_for(scene, world_to_eye(resolve_view(scene, convert_options.view)), arguments);
   ConvertReport report;
@@ -100,7 +102,7 @@ void trace(const Scene& scene, const Arguments& arguments, const Raster& raster,
   const Surface surface(arguments.options.surface, screen_radius(raster));
   RayTraceOptions rays;
   rays.near = arguments.options.refine.near;
-  rays.unlit = arguments.options.unlit;
+  rays.unlit = arguments.options.shading == Shading::unlit;
   rays.lights = arguments.lights;
   rays.shadows = arguments.shadows;
   rays.exposure = arguments.exposure;
@@ -121,9 +123,10 @@ void check(const Arguments& arguments) {
   };
   only(gl && arguments.samples != 1, "--samples", "raytrace");
   only(gl && !arguments.hot_spot.empty(), "--hot-spot", "raytrace");
-  only(gl && arguments.shadows, "--shadows", "raytrace");
+  const bool baked = gl && arguments.options.shading == Shading::bake;
+  only(gl && arguments.shadows && !baked, "--shadows", "raytrace");
   only(!gl && arguments.supersample != 1, "--supersample", "gl");
-  if (arguments.shadows && !arguments.lights) throw Error(ErrorCode::usage, "--shadows: needs --lights");
+  if (arguments.shadows && !arguments.lights && !baked) throw Error(ErrorCode::usage, "--shadows: needs --lights");
 }
 
 /// The size that was asked for, else the one a warped file was made for.

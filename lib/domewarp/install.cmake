@@ -21,7 +21,7 @@ public_headers(refine edge_oracle.h error_bound.h isotropic.h levels.h radial_ra
 public_headers(gltf read.h survey.h write.h)
 public_headers(render compare.h frame.h image_metrics.h lights.h pixel_judge.h rasterise.h ray_trace.h screen.h)
 public_headers(audit inspect.h)
-public_headers(convert batch.h batch_plan.h batch_row.h batch_summary.h convert.h display.h job.h live.h manifest.h record.h report.h)
+public_headers(convert bake.h batch.h batch_plan.h batch_row.h batch_summary.h convert.h display.h job.h live.h manifest.h record.h report.h)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/domewarp)
 install(EXPORT domewarp NAMESPACE domewarp:: FILE domewarpTargets.cmake DESTINATION ${package_folder} COMPONENT development)

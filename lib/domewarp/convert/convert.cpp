@@ -42,6 +42,22 @@ std::vector<Light> lights_in_eye_space(const Scene& scene, const View& view, std
   return lights;
 }
 
+void check_shading(const ConvertOptions& options) {
+  if (!(options.bake.tolerance > 0))
+    throw Error(ErrorCode::usage, "--light-tolerance: must be greater than 0, got " + std::to_string(options.bake.tolerance));
+  if (options.bake.shadows && options.shading != Shading::bake) throw Error(ErrorCode::usage, "--shadows: needs --shading bake");
+}
+
+Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report) {
+  LightBaker baker(scene, report.view, options.bake);
+  RefineOptions refine_options = options.refine;
+  baker.attach(refine_options);
+  Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
+  report.baked = baker.finish(warped);
+  for (const std::string& warning : bake_warnings(report.baked)) report.warnings.push_back(warning);
+  return warped;
+}
+
 } // namespace
 
 std::size_t expected_points(const Scene& scene, const ConvertOptions& options) {
@@ -63,6 +79,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& 
 Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report,
               const Progress& progress) {
   check_raster(options.raster);
+  check_shading(options);
   const Clock::time_point start = Clock::now();
   report.warnings = scene.warnings;
   report.dropped_extensions = scene.dropped_extensions;
@@ -71,11 +88,11 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   report.expected_points = expected_points(scene, options);
 
   tell(progress, "refine");
-  Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);
-  if (options.unlit)
+  Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, display, report)
+                                                  : refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);
+  if (options.shading == Shading::unlit)
     for (Material& material : warped.materials) material.unlit = true;
-  else
-    warped.lights = lights_in_eye_space(scene, report.view, report.warnings);
+  if (options.shading == Shading::keep) warped.lights = lights_in_eye_space(scene, report.view, report.warnings);
   report.total_ms = ms_since(start);
   report.peak_memory_mb = static_cast<double>(peak_memory()) / (1 << 20);
   warped.extras = to_json(make_record(options, report));

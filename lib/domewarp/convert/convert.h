@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "domewarp/convert/bake.h"
 #include "domewarp/convert/display.h"
 #include "domewarp/core/progress.h"
 #include "domewarp/profile/surface.h"
@@ -12,6 +13,13 @@
 
 namespace domewarp {
 
+/// How the written file is lit.
+enum class Shading {
+  keep,  ///< normals and directional lights in eye space
+  unlit, ///< colours as they are: every material is marked KHR_materials_unlit
+  bake,  ///< light in COLOR_0 (bake.h), every material marked KHR_materials_unlit
+};
+
 /// Everything that decides what a conversion looks like.
 struct ConvertOptions {
   ViewOptions view;
@@ -19,7 +27,8 @@ struct ConvertOptions {
   Raster raster;
   Method method = Method::automatic;
   RefineOptions refine;
-  bool unlit = false;           ///< mark every material KHR_materials_unlit
+  Shading shading = Shading::keep;
+  BakeOptions bake;             ///< for Shading::bake
 };
 
 /// How many points mapping the scene takes at least, about: what Method::automatic goes by. Refinement evaluates the map
@@ -37,6 +46,7 @@ struct ConvertReport {
   std::size_t expected_points = 0; ///< what Method::automatic went by
   std::vector<std::string> warnings;
   std::vector<std::string> dropped_extensions;
+  BakeReport baked;             ///< of Shading::bake
   double map_ms = 0;
   double total_ms = 0;
   double peak_memory_mb = 0;    ///< of the process so far

@@ -66,7 +66,10 @@ Record make_record(const ConvertOptions& options, const ConvertReport& report) {
   record.projection = options.refine.projection;
   record.tolerance_px = options.refine.tolerance_px;
   record.near = report.refine.near;
-  record.unlit = options.unlit;
+  record.unlit = options.shading == Shading::unlit;
+  record.baked = options.shading == Shading::bake;
+  record.shadows = record.baked && options.bake.shadows;
+  record.exposure = record.baked ? options.bake.exposure : 0;
   record.error_px = report.refine.error_px_max;
   record.depth_error = report.refine.depth_error_max;
   record.triangles_in = report.refine.triangles_in;
@@ -90,6 +93,7 @@ std::string to_json(const Record& record) {
   json["tolerance_px"] = record.tolerance_px;
   json["near"] = record.near;
   json["unlit"] = record.unlit;
+  if (record.baked) json["baked"] = {{"shadows", record.shadows}, {"exposure", record.exposure}};
   json["error_px"] = record.error_px;
   json["depth_error"] = record.depth_error;
   json["triangles"] = {{"input", record.triangles_in}, {"output", record.triangles_out}};
@@ -111,6 +115,11 @@ Record parse_record(const std::string& text, const std::string& name) {
     record.tolerance_px = json.at("tolerance_px").get<double>();
     record.near = json.value("near", 0.0);
     record.unlit = json.value("unlit", false);
+    record.baked = json.contains("baked");
+    if (record.baked) {
+      record.shadows = json["baked"].value("shadows", false);
+      record.exposure = json["baked"].value("exposure", 0.0);
+    }
     record.error_px = json.contains("error_px") && json["error_px"].is_number() ? json["error_px"].get<double>() : nan;
     const bool bounded = json.contains("depth_error") && json["depth_error"].is_number();
     record.depth_error = bounded ? json["depth_error"].get<double>() : RefineOptions{}.depth_tolerance;

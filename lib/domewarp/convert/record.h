@@ -18,6 +18,9 @@ struct Record {
   double tolerance_px = 0;
   double near = 0;
   bool unlit = false;
+  bool baked = false;            ///< light in the colours; with shadows, exposure in stops:
+  bool shadows = false;
+  double exposure = 0;
   double error_px = 0;           ///< certified; nan when nothing bounds it
   double depth_error = 0;        ///< certified, relative: how far interpolated depths are off; the default tolerance
                                  ///< when the file does not say or nothing bounds it

@@ -113,6 +113,11 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
                          {"divisions", refine.isotropic.divisions},
                          {"invisible", refine.isotropic.invisible}};
   json["method"] = method_json(report, options);
+  if (options.shading == Shading::bake)
+    json["baked"] = {{"lights", report.baked.lights},
+                     {"vertices", report.baked.vertices},
+                     {"clipped_vertices", report.baked.clipped_vertices},
+                     {"brightest", report.baked.brightest}};
   json["time_ms"] = {{"map", report.map_ms},
                      {"topology", refine.soup_ms},
                      {"refine", refine.levels_ms},

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <unordered_set>
+#include <bit>
+#include <cstdint>
 
 #include <meshoptimizer.h>
 
@@ -13,35 +14,52 @@ namespace domewarp {
 
 namespace {
 
-using Corners = std::array<std::uint32_t, 3>;
+/// Triangles are ordered in runs of this many, in parallel: a cache forgets the start of a run long before its end.
+constexpr std::size_t run_indices = 3 * 65536;
 
-struct CornersHash {
-  std::size_t operator()(const Corners& c) const {
-    std::uint64_t hash = c[0];
-    for (const std::uint32_t corner : {c[1], c[2]}) hash = (hash ^ (hash >> 29)) * 0x9E3779B97F4A7C15u + corner;
-    return static_cast<std::size_t>(hash ^ (hash >> 32));
+/// Of three vertices in any order; never 0.
+std::uint64_t hash_of(std::array<std::uint32_t, 3> corners) {
+  std::sort(corners.begin(), corners.end());
+  std::uint64_t hash = corners[0];
+  for (const std::uint32_t corner : {corners[1], corners[2]}) {
+    hash = (hash ^ (hash >> 29)) * 0x9E3779B97F4A7C15u + corner;
+    hash = (hash ^ (hash >> 32)) * 0xD6E8FEB86659FD93u;
   }
-};
+  return hash | 1;
+}
 
-/// Whether two triangles have the same three positions.
+/// Whether two triangles have the same three positions, or seem to, once in ten million scenes of a million triangles.
 bool has_duplicates(const Primitive& primitive) {
   std::vector<std::uint32_t> welded(primitive.indices.size());
   meshopt_generateShadowIndexBuffer(welded.data(), primitive.indices.data(), primitive.indices.size(),
                                     primitive.positions.data(), primitive.positions.size(), sizeof(Vec3f), sizeof(Vec3f));
-  std::unordered_set<Corners, CornersHash> seen;
-  seen.reserve(welded.size() / 3);
+  std::vector<std::uint64_t> seen(std::bit_ceil(welded.size() / 3 * 2 + 1), 0);
   for (std::size_t i = 0; i + 2 < welded.size(); i += 3) {
-    Corners corners = {welded[i], welded[i + 1], welded[i + 2]};
-    std::sort(corners.begin(), corners.end());
-    if (!seen.insert(corners).second) return true;
+    const std::uint64_t hash = hash_of({welded[i], welded[i + 1], welded[i + 2]});
+    std::size_t slot = hash >> 16 & (seen.size() - 1);
+    for (; seen[slot] != 0; slot = (slot + 1) & (seen.size() - 1))
+      if (seen[slot] == hash) return true;
+    seen[slot] = hash;
   }
   return false;
 }
 
+/// The vertices of a run lie close together, as they were numbered in the order of the triangles.
+void order_run(std::uint32_t* indices, std::size_t count) {
+  const auto [low, high] = std::minmax_element(indices, indices + count);
+  const std::uint32_t first = *low;
+  const std::size_t vertices = *high - first + 1;
+  for (std::size_t i = 0; i < count; ++i) indices[i] -= first;
+  std::vector<std::uint32_t> ordered(count);
+  meshopt_optimizeVertexCache(ordered.data(), indices, count, vertices);
+  for (std::size_t i = 0; i < count; ++i) indices[i] = ordered[i] + first;
+}
+
 void order_triangles(Primitive& primitive) {
-  std::vector<std::uint32_t> ordered(primitive.indices.size());
-  meshopt_optimizeVertexCache(ordered.data(), primitive.indices.data(), ordered.size(), primitive.positions.size());
-  primitive.indices = std::move(ordered);
+  const std::size_t count = primitive.indices.size() / 3 * 3;
+  parallel_each((count + run_indices - 1) / run_indices, 1, [&](std::size_t run) {
+    order_run(primitive.indices.data() + run * run_indices, std::min(run_indices, count - run * run_indices));
+  });
 }
 
 /// Numbers vertices by their first use; those that nothing uses are dropped. (meshopt's own numbering takes triangles only.)
@@ -55,12 +73,13 @@ void order_vertices(Primitive& primitive) {
   }
   std::vector<Vec3f> positions(used);
   meshopt_remapVertexBuffer(positions.data(), primitive.positions.data(), remap.size(), sizeof(Vec3f), remap.data());
-  for (Attribute& attribute : primitive.attributes) {
+  parallel_each(primitive.attributes.size(), 1, [&](std::size_t a) {
+    Attribute& attribute = primitive.attributes[a];
     const auto components = static_cast<std::size_t>(attribute.components);
     std::vector<float> values(used * components);
     meshopt_remapVertexBuffer(values.data(), attribute.values.data(), remap.size(), components * sizeof(float), remap.data());
     attribute.values = std::move(values);
-  }
+  });
   primitive.positions = std::move(positions);
 }
 

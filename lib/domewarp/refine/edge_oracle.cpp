@@ -20,6 +20,7 @@ constexpr double smallest_angle = 1e-9;
 constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
 constexpr double spare = 1.1;            ///< by how much more than the middle's deviation the greatest one is taken to be
 constexpr double most_counted = 64;      ///< pieces; what needs more is far from knowing how many
+constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
 
 Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
@@ -49,13 +50,16 @@ EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchM
                        const OracleOptions& options)
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
       rim_angle_(unnoticed_angle(surface, branch, options.tolerance)), low_slope_(slope_at(surface, branch, map.branch().theta_low, map.branch().fold_low)),
-      high_slope_(slope_at(surface, branch, highest_angle(map.branch()), map.branch().fold_high)) {}
+      high_slope_(slope_at(surface, branch, highest_angle(map.branch()), map.branch().fold_high)) {
+  if (options.criterion) most_asked_ = static_cast<int>(std::ceil(std::log2(widest_asked / options.criterion_length)));
+}
 
 EdgeOracle EdgeOracle::relaxed(double factor) const {
   EdgeOracle oracle = *this;
   oracle.options_.tolerance *= factor;
   oracle.options_.face_tolerance *= factor;
   oracle.options_.depth_tolerance *= factor;
+  oracle.options_.criterion_length *= factor;
   oracle.rim_angle_ *= factor;
   return oracle;
 }
@@ -149,7 +153,24 @@ EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b) cons
     return decision;
   }
   if (glm::length(b.eye - a.eye) <= smallest_angle * std::min(rho_a, rho_b)) return decision;
-  return split_by_error(a, b);
+  return split_by_criterion(split_by_error(a, b), a, b);
+}
+
+// A jump along the side of a sliver can ask for ever for vertices ever nearer to that side. Halving ends sooner, so
+// points remember how many of these splits led to them.
+EdgeDecision EdgeOracle::split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const {
+  const std::uint8_t asked = std::max(a.asked, b.asked);
+  const auto is_asked = [&] {
+    return asked < most_asked_ && glm::length(b.mapped.image - a.mapped.image) > options_.criterion_length && options_.criterion(a, b);
+  };
+  if (decision.split) {
+    decision.split->point.asked = asked;
+  } else if (is_asked()) {
+    decision.split = Split{0.5, locate(point_at(a.eye, b.eye, 0.5))};
+    decision.split->point.asked = asked + 1;
+    ++decision.evaluations;
+  }
+  return decision;
 }
 
 DrawnPoint EdgeOracle::drawn(const MappedPoint& p) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "domewarp/refine/error_bound.h"
@@ -15,6 +16,7 @@ namespace domewarp {
 struct MappedPoint : Direction {
   Sides sides{1, 1, 1};
   Mapped mapped;            ///< only where no side is -1
+  std::uint8_t asked = 0;   ///< how many splits that a criterion asked for led to it
 };
 
 /// A point of an edge or face as it would be drawn without being a vertex: interpolated between those that are.
@@ -52,17 +54,23 @@ struct SideBound {
   double middle = -1, arch = 0;
 };
 
+/// Whether what is drawn on an edge asks for a vertex at its middle; `a` precedes `b`. A pure function of the two points,
+/// called from many threads.
+using EdgeCriterion = std::function<bool(const MappedPoint& a, const MappedPoint& b)>;
+
 struct OracleOptions {
   double tolerance = 0;     ///< image units, for edges
   double face_tolerance = 0; ///< for faces, a little more: their bound can never fall below that of their sides
   double depth_tolerance = 0; ///< relative
   Projection projection = Projection::perspective;
+  EdgeCriterion criterion = {}; ///< asked when nothing else splits an edge; may be empty
+  double criterion_length = 0; ///< edges whose images are not longer are not asked about, image units
 };
 
 /// Everything decided about an edge is decided here, from its two end points alone, in the order given by `precedes`.
 /// In this order: split where it crosses a boundary; split where it dips across one and back; leave it when it is
 /// outside; split at the angle's bisector beyond 60 degrees; split while the error bound exceeds the tolerance, an
-/// edge that needs n pieces at floor(n / 2) / n of its angle.
+/// edge that needs n pieces at floor(n / 2) / n of its angle; split at the midpoint while a criterion of the caller's asks for it.
 class EdgeOracle {
 public:
   EdgeOracle(const Surface& surface, std::size_t branch, const BranchMap& map, VisibleRegion region,
@@ -92,7 +100,7 @@ public:
   /// Whether a face is within its tolerance at four points inside: for faces that no bound can prove good.
   bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const;
 
-  /// The same with every tolerance times `factor`.
+  /// The same with every tolerance, and the least length that the criterion is asked about, times `factor`.
   EdgeOracle relaxed(double factor) const;
 
   int orientation() const { return map_.branch().orientation; }
@@ -118,6 +126,7 @@ private:
   DrawnPoint between(const DrawnPoint& p, const DrawnPoint& q) const; ///< one evaluation
   Piece piece(const DrawnPoint& p, const DrawnPoint& q) const;
   Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const;
+  EdgeDecision split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const;
   EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b) const;
   EdgeDecision split_by_samples(const MappedPoint& a, const MappedPoint& b) const;
 
@@ -125,6 +134,7 @@ private:
   VisibleRegion region_;
   OracleOptions options_;
   ErrorBound bound_;
+  int most_asked_ = 0;      ///< the criterion is not asked about ends that took so many of its splits
   double rim_angle_;        ///< how far (radians) an edge may dip across a cone unnoticed
   double low_slope_, high_slope_; ///< |R'| at the ends of the branch, 0 at a fold
 };

@@ -16,8 +16,6 @@ namespace domewarp {
 
 namespace {
 
-constexpr std::uint32_t unused = 0xffffffff;
-
 /// Attribute values of the derived wedges that the output needs, in the space of their mesh, components of all
 /// attributes of the part side by side. A wedge's parents come before it, so one ascending pass is enough.
 class WedgeValues {
@@ -43,6 +41,7 @@ public:
         size += stride_[derived(first_derived_ + i).part];
       }
     values_.resize(size);
+    parent_.resize(stride_.empty() ? 0 : *std::max_element(stride_.begin(), stride_.end()));
     for (std::uint32_t i = 0; i < count; ++i)
       if (needed[i]) blend(first_derived_ + i, &values_[offset_[i]]);
   }
@@ -70,15 +69,14 @@ private:
     return i < soup_.extra_wedges.size() ? soup_.extra_wedges[i] : refined_.wedges[i - soup_.extra_wedges.size()];
   }
 
-  void blend(std::uint32_t id, double* out) const {
+  void blend(std::uint32_t id, double* out) {
     const Wedge& wedge = derived(id);
     const int stride = stride_[wedge.part];
-    std::vector<double> parent(stride);
     std::fill_n(out, stride, 0.0);
     for (int k = 0; k < 3; ++k) {
       if (wedge.weight[k] == 0) continue;
-      get(wedge.parent[k], wedge.part, parent.data());
-      for (int c = 0; c < stride; ++c) out[c] += wedge.weight[k] * parent[c];
+      get(wedge.parent[k], wedge.part, parent_.data());
+      for (int c = 0; c < stride; ++c) out[c] += wedge.weight[k] * parent_[c];
     }
   }
 
@@ -89,6 +87,7 @@ private:
   std::vector<int> stride_;          ///< per part
   std::vector<std::size_t> offset_;  ///< per derived wedge
   std::vector<double> values_;
+  std::vector<double> parent_;       ///< scratch
 };
 
 bool is_off_picture(const RefinedMesh& refined, const RefinedFace& face, const Vec2& half_extent) {
@@ -100,84 +99,158 @@ bool is_off_picture(const RefinedMesh& refined, const RefinedFace& face, const V
   return false;
 }
 
+constexpr std::uint32_t no_vertex = 0xffffffff;
+
+/// A vertex that the output needs, before anything of it is computed.
+struct Corner {
+  std::uint32_t wedge, point;
+  std::uint32_t face;           ///< of the soup, the first that uses it
+  std::uint32_t next;           ///< vertex of the same wedge with another colour, or no_vertex
+};
+
 struct PartOutput {
   Primitive primitive;
   std::size_t zero_area = 0;
   double smallest_depth = std::numeric_limits<double>::infinity(), largest_depth = 0;
 };
 
+/// Everything that the parts of one branch are emitted from.
+struct EmitJob {
+  const Scene& scene;
+  const View& view;
+  const Soup& soup;
+  const RefinedMesh& refined;
+  const RefineOptions& options;
+  const WedgeValues& values;
+  int orientation;
+  std::vector<std::uint32_t>& vertex_of; ///< per wedge: its first vertex in the part, or no_vertex
+};
+
+/// One part of the output: first its triangles and which vertices they need, then the vertices, in parallel.
 class PartEmitter {
 public:
-  PartEmitter(const View& view, const Soup& soup, const RefinedMesh& refined, const WedgeValues& values, const Scene& scene,
-              const RefineOptions& options, std::vector<std::uint32_t>& vertex_of)
-      : soup_(soup), refined_(refined), values_(values), options_(options), part_(0), vertex_of_(vertex_of),
-        writer_(view, scene.instances.front().world), view_(view), scene_(scene) {}
+  PartEmitter(const EmitJob& job, std::uint32_t part)
+      : job_(job), part_(part), source_(job.values.primitive(job.soup.parts[part])),
+        writer_(job.view, job.scene.instances[job.soup.parts[part].instance].world),
+        has_normals_(find_attribute(source_, "NORMAL") != nullptr) {}
 
-  /// @param faces indices into refined.faces, all of `part`
-  PartOutput emit(std::uint32_t part, std::span<const std::uint32_t> faces, int orientation) {
-    part_ = part;
-    const Primitive& source = values_.primitive(soup_.parts[part]);
-    writer_ = AttributeWriter(view_, scene_.instances[soup_.parts[part].instance].world);
+  /// @param faces indices into refined.faces, all of the part
+  PartOutput emit(std::span<const std::uint32_t> faces) {
     PartOutput out;
-    out.primitive.material = source.material;
-    for (const Attribute& attribute : source.attributes)
-      if (attribute.name != source_position) out.primitive.attributes.push_back({attribute.name, attribute.components, {}});
-    if (options_.source_attributes) out.primitive.attributes.push_back({source_position, 3, {}});
-    scratch_.resize(values_.stride(part));
-    for (const std::uint32_t f : faces) {
-      const RefinedFace& face = refined_.faces[f];
-      if (options_.skip.zero_area && has_equal_corners(face)) {
-        ++out.zero_area;
-        continue;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const int corner = orientation < 0 ? 2 - k : k;
-        out.primitive.indices.push_back(vertex(face.wedge[corner], face.point[corner], source, out));
-      }
-    }
+    out.primitive.material = source_.material;
+    out.primitive.indices.reserve(3 * faces.size());
+    for (const std::uint32_t f : faces) add_face(job_.refined.faces[f], out);
+    fill_positions(out);
+    fill_attributes(out.primitive);
+    if (job_.options.vertex_colour) fill_colours(out.primitive);
     return out;
   }
 
 private:
+  void add_face(const RefinedFace& face, PartOutput& out) {
+    if (job_.options.skip.zero_area && has_equal_corners(face)) {
+      ++out.zero_area;
+      return;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int corner = job_.orientation < 0 ? 2 - k : k;
+      out.primitive.indices.push_back(vertex(face.wedge[corner], face.point[corner], face.source));
+    }
+  }
+
   bool has_equal_corners(const RefinedFace& face) const {
-    const auto position = [&](int k) { return warped_position(refined_.points[face.point[k]], options_.projection); };
+    const auto position = [&](int k) { return warped_position(job_.refined.points[face.point[k]], job_.options.projection); };
     const Vec3f a = position(0), b = position(1), c = position(2);
     return a == b || b == c || c == a;
   }
 
-  std::uint32_t vertex(std::uint32_t wedge, std::uint32_t point, const Primitive& source, PartOutput& out) {
-    std::uint32_t& id = vertex_of_[wedge];
-    if (id != unused) return id;
-    id = static_cast<std::uint32_t>(out.primitive.positions.size());
-    const MappedPoint& mapped = refined_.points[point];
-    const Vec3f position = warped_position(mapped, options_.projection);
-    out.smallest_depth = std::min(out.smallest_depth, static_cast<double>(-position.z));
-    out.largest_depth = std::max(out.largest_depth, static_cast<double>(-position.z));
-    out.primitive.positions.push_back(position);
-    values_.get(wedge, part_, scratch_.data());
-    const double* values = scratch_.data();
-    std::size_t written = 0;
-    for (const Attribute& attribute : source.attributes) {
-      if (attribute.name != source_position) writer_.append(attribute, values, out.primitive.attributes[written++].values);
-      values += attribute.components;
-    }
-    if (options_.source_attributes) {
-      const Vec3f eye(mapped.eye);
-      out.primitive.attributes.back().values.insert(out.primitive.attributes.back().values.end(), {eye.x, eye.y, eye.z});
-    }
-    return id;
+  std::uint32_t vertex(std::uint32_t wedge, std::uint32_t point, std::uint32_t face) {
+    for (std::uint32_t v = job_.vertex_of[wedge]; v != no_vertex; v = corners_[v].next)
+      if (!job_.options.vertex_colour || look_alike(corners_[v].face, face)) return v;
+    corners_.push_back({wedge, point, face, job_.vertex_of[wedge]});
+    return job_.vertex_of[wedge] = static_cast<std::uint32_t>(corners_.size() - 1);
   }
 
-  const Soup& soup_;
-  const RefinedMesh& refined_;
-  const WedgeValues& values_;
-  const RefineOptions& options_;
+  /// Whether a vertex can have one colour for both faces: without normals of their own only if it is one face, else if
+  /// the same side is seen of both.
+  bool look_alike(std::uint32_t f, std::uint32_t g) const {
+    return f == g || (has_normals_ && is_seen_from_behind(f) == is_seen_from_behind(g));
+  }
+
+  Vec3 normal_of(const SoupFace& face) const {
+    const std::vector<Vec3>& p = job_.soup.points;
+    return glm::cross(p[face.point[1]] - p[face.point[0]], p[face.point[2]] - p[face.point[0]]);
+  }
+
+  bool is_seen_from_behind(std::uint32_t f) const {
+    const SoupFace& face = job_.soup.faces[f];
+    return glm::dot(normal_of(face), job_.soup.points[face.point[0]]) > 0;
+  }
+
+  void fill_positions(PartOutput& out) const {
+    std::vector<Vec3f>& positions = out.primitive.positions;
+    positions.resize(corners_.size());
+    parallel_each(positions.size(), 1024, [&](std::size_t i) {
+      positions[i] = warped_position(job_.refined.points[corners_[i].point], job_.options.projection);
+    });
+    for (const Vec3f& position : positions) {
+      out.smallest_depth = std::min(out.smallest_depth, static_cast<double>(-position.z));
+      out.largest_depth = std::max(out.largest_depth, static_cast<double>(-position.z));
+    }
+  }
+
+  void fill_attributes(Primitive& out) const {
+    for (const Attribute& attribute : source_.attributes)
+      if (attribute.name != source_position)
+        out.attributes.push_back({attribute.name, attribute.components, std::vector<float>(corners_.size() * attribute.components)});
+    parallel_ranges(corners_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> values(job_.values.stride(part_));
+      for (std::size_t i = begin; i < end; ++i) {
+        job_.values.get(corners_[i].wedge, part_, values.data());
+        const double* at = values.data();
+        std::size_t written = 0;
+        for (const Attribute& attribute : source_.attributes) {
+          if (attribute.name != source_position) writer_.write(attribute, at, &out.attributes[written++].values[i * attribute.components]);
+          at += attribute.components;
+        }
+      }
+    });
+    if (!job_.options.source_attributes) return;
+    std::vector<float>& source = out.attributes.emplace_back(source_position, 3, std::vector<float>(3 * corners_.size())).values;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      for (int c = 0; c < 3; ++c) source[3 * i + c] = static_cast<float>(job_.refined.points[corners_[i].point].eye[c]);
+  }
+
+  /// Replaces COLOR_0 by what the caller makes of it.
+  void fill_colours(Primitive& out) const {
+    const Attribute* given = find_attribute(out, "COLOR_0");
+    const Attribute* normals = find_attribute(out, "NORMAL");
+    const int components = given != nullptr && given->components == 4 ? 4 : 3;
+    std::vector<float> colours(corners_.size() * components);
+    parallel_each(corners_.size(), 64, [&](std::size_t i) {
+      const SoupFace& face = job_.soup.faces[corners_[i].face];
+      const std::vector<Vec3>& p = job_.soup.points;
+      VertexToColour vertex;
+      vertex.instance = job_.soup.parts[part_].instance;
+      vertex.primitive = job_.soup.parts[part_].primitive;
+      vertex.eye = job_.refined.points[corners_[i].point].eye;
+      vertex.face_normal = normal_of(face);
+      vertex.face_centre = (p[face.point[0]] + p[face.point[1]] + p[face.point[2]]) / 3.0;
+      vertex.normal = normals == nullptr ? vertex.face_normal : Vec3(normals->values[3 * i], normals->values[3 * i + 1], normals->values[3 * i + 2]);
+      for (int c = 0; given != nullptr && c < given->components; ++c) vertex.colour[c] = given->values[i * given->components + c];
+      const Vec4 colour = job_.options.vertex_colour(vertex);
+      for (int c = 0; c < components; ++c) colours[i * components + c] = static_cast<float>(colour[c]);
+    });
+    std::erase_if(out.attributes, [](const Attribute& attribute) { return attribute.name == "COLOR_0"; });
+    out.attributes.push_back({"COLOR_0", components, std::move(colours)});
+  }
+
+  const EmitJob& job_;
   std::uint32_t part_;
-  std::vector<std::uint32_t>& vertex_of_;
+  const Primitive& source_;
   AttributeWriter writer_;
-  const View& view_;
-  const Scene& scene_;
-  std::vector<double> scratch_;
+  bool has_normals_;
+  std::vector<Corner> corners_;
 };
 
 } // namespace
@@ -200,12 +273,11 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
     for (const std::uint32_t wedge : face.wedge) drawn[wedge] = 1;
   }
   const WedgeValues values(scene, soup, refined, drawn);
-  std::vector<std::uint32_t> vertex_of(drawn.size(), unused);
+  std::vector<std::uint32_t> vertex_of(drawn.size(), no_vertex);
+  const EmitJob job{scene, view, soup, refined, options, values, orientation, vertex_of};
   std::vector<PartOutput> outputs(soup.parts.size());
   parallel_each(outputs.size(), 1, [&](std::size_t part) {
-    if (faces_of[part].empty()) return;
-    PartEmitter emitter(view, soup, refined, values, scene, options, vertex_of);
-    outputs[part] = emitter.emit(static_cast<std::uint32_t>(part), faces_of[part], orientation);
+    if (!faces_of[part].empty()) outputs[part] = PartEmitter(job, static_cast<std::uint32_t>(part)).emit(faces_of[part]);
   });
   for (std::size_t part = 0; part < outputs.size(); ++part) {
     PartOutput& output = outputs[part];

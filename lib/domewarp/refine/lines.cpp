@@ -170,7 +170,9 @@ private:
         const auto at = [&](std::uint32_t v) { return double(attribute.values[std::size_t(v) * attribute.components + c]); };
         values[c] = at(segment.a) * (1 - station.t) + at(segment.b) * station.t;
       }
-      writer_.append(attribute, values.data(), out_.attributes[written++].values);
+      std::vector<float>& out = out_.attributes[written++].values;
+      out.resize(out.size() + attribute.components);
+      writer_.write(attribute, values.data(), out.data() + out.size() - attribute.components);
     }
     if (options_.source_attributes) {
       const Vec3f eye(station.point.eye);

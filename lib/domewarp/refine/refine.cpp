@@ -150,7 +150,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
 
   const double tolerance = options.tolerance_px * pixel_size(raster);
   OracleOptions oracle_options{edge_share * tolerance, std::max(edge_share * tolerance, tolerance - file_rounding), options.depth_tolerance,
-                               options.projection};
+                               options.projection, options.criterion, options.criterion_px * pixel_size(raster)};
   if (options.subdivision == Subdivision::none)
     oracle_options.tolerance = oracle_options.face_tolerance = oracle_options.depth_tolerance = 1e30;
   for (std::size_t b = 0; b < map.branches.size(); ++b) {

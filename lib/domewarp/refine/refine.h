@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "domewarp/profile/surface.h"
-#include "domewarp/refine/error_bound.h"
+#include "domewarp/refine/edge_oracle.h"
 #include "domewarp/refine/isotropic.h"
 #include "domewarp/refine/skips.h"
 #include "domewarp/scene/raster.h"
@@ -22,6 +23,19 @@ enum class Subdivision {
   none,      ///< only clip (error as it comes)
 };
 
+/// What the colour of a written vertex can depend on, in eye space.
+struct VertexToColour {
+  int instance = 0, primitive = 0;   ///< Scene::instances, and within its mesh
+  Vec3 eye = Vec3(0);                ///< where it is
+  Vec3 normal = Vec3(0);             ///< NORMAL; without it that of the face
+  Vec3 face_normal = Vec3(0);        ///< of a source triangle that it lies on, any length; of another the same side is seen
+  Vec3 face_centre = Vec3(0);        ///< of that triangle
+  Vec4 colour = Vec4(1);             ///< COLOR_0
+};
+
+/// The COLOR_0 of a vertex of the written triangles. A pure function, called from many threads.
+using VertexColour = std::function<Vec4(const VertexToColour&)>;
+
 struct RefineOptions {
   double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
   double depth_tolerance = 0.002;    ///< largest relative error of the interpolated depth, > 0: 1 % put a train's wheels behind its rails
@@ -33,6 +47,9 @@ struct RefineOptions {
   SkipOptions skip;
   Subdivision subdivision = Subdivision::adaptive;
   IsotropicOptions isotropic;        ///< for Subdivision::isotropic
+  EdgeCriterion criterion;           ///< splits more edges than the tolerance needs (not with Subdivision::isotropic)
+  double criterion_px = 2;           ///< but none whose image is not longer than this, pixels
+  VertexColour vertex_colour;        ///< if set, computes COLOR_0; vertices are doubled where their faces need two colours
 };
 
 struct RefineReport {

@@ -29,15 +29,14 @@ Vec3f warped_position(const MappedPoint& point, Projection projection) {
 AttributeWriter::AttributeWriter(const View& view, const Mat4& world)
     : directions_(Mat3(world_to_eye(view)) * Mat3(world)), normals_(cofactors(directions_)) {}
 
-void AttributeWriter::append(const Attribute& attribute, const double* values, std::vector<float>& out) const {
+void AttributeWriter::write(const Attribute& attribute, const double* values, float* out) const {
   int done = 0;
   if (attribute.name == "NORMAL" || attribute.name == "TANGENT") {
     const Vec3 v(values[0], values[1], values[2]);
     const Vec3f turned = unit_or_zero(attribute.name == "NORMAL" ? normals_ * v : directions_ * v);
-    out.insert(out.end(), {turned.x, turned.y, turned.z});
-    done = 3;
+    for (; done < 3; ++done) out[done] = turned[done];
   }
-  for (; done < attribute.components; ++done) out.push_back(static_cast<float>(values[done]));
+  for (; done < attribute.components; ++done) out[done] = static_cast<float>(values[done]);
 }
 
 } // namespace domewarp

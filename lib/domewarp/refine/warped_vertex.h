@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "domewarp/refine/edge_oracle.h"
 #include "domewarp/scene/scene.h"
 #include "domewarp/scene/view.h"
@@ -19,8 +17,8 @@ class AttributeWriter {
 public:
   AttributeWriter(const View& view, const Mat4& world);
 
-  /// Appends one vertex' values of an attribute. @param values `attribute.components` of them, in the space of the mesh
-  void append(const Attribute& attribute, const double* values, std::vector<float>& out) const;
+  /// Writes one vertex' values of an attribute, `attribute.components` of them. @param values in the space of the mesh
+  void write(const Attribute& attribute, const double* values, float* out) const;
 
 private:
   Mat3 directions_, normals_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Based on: Wald et al., Embree, 2014; signed volumes after Kensler and Shirley, Optimizing Ray-Triangle Intersection,
-// 2006.
+// Based on: Wald et al., Embree, 2014.
 //
 // Embree works in float32 and its choice among hits near an edge depends on the instruction set. Here it gets triangles
 // that are slightly too large, so that it proposes every triangle the exact test could accept, and a filter function
@@ -21,6 +20,7 @@
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
 #include "domewarp/render/shading.h"
+#include "domewarp/render/triangle.h"
 
 namespace domewarp {
 
@@ -30,7 +30,6 @@ namespace {
 /// by about 2e-7 of that; a plane seen at a slant of 1:150 still leaves the margin needed. For rays that do not begin at
 /// the eye it covers origins up to a hundred times as far from the eye as the triangle.
 constexpr double inflation = 3e-5;
-constexpr double longest_mitre = 1000;
 
 /// Largest coordinate of the geometry given to Embree, so that products of three stay far from float32's limits.
 constexpr int largest_exponent = 30;
@@ -48,54 +47,12 @@ bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-double largest(const Vec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-/// The corners of a triangle whose edges have moved outwards by `margin`; NaN (never hit) for one without area.
-void inflate(const Vec3 (&v)[3], double margin, Vec3 (&out)[3]) {
-  const Vec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
-  const double area = glm::length(normal);
-  Vec3 outward[3];
-  for (int i = 0; i < 3; ++i) outward[i] = glm::normalize(glm::cross(v[(i + 1) % 3] - v[i], normal / area));
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& a = outward[i];
-    const Vec3& b = outward[(i + 2) % 3];
-    const double mitre = 1 / std::max(1 + glm::dot(a, b), 2 / (longest_mitre * longest_mitre));
-    out[i] = v[i] + margin * mitre * (a + b);
-  }
-}
-
 /// The nearness that ties are judged by: 2^-44 of the distance is coarser than the rounding of `intersect` for all but
 /// grazing triangles, and finer than anything a picture shows.
 double rounded_distance(double distance) {
   int exponent = 0;
   const double mantissa = std::frexp(distance, &exponent);
   return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
-}
-
-struct Crossing {
-  double distance = 0;
-  double det = 0; ///< direction . (unnormalised normal): negative when the ray meets the front
-  double weights[3] = {};
-  double slack = 0; ///< relative error that float32 may make in the distance
-};
-
-/// Signed volumes decide. cross(a, b) and cross(b, a) are exact negatives, so two triangles with a common edge agree
-/// about the side a ray passes on, and none slips between them. A ray exactly on the edge hits both.
-bool intersect(const Vec3& d, const Vec3& v0, const Vec3& v1, const Vec3& v2, Crossing& crossing) {
-  const Vec3 c0 = glm::cross(v1, v2), c1 = glm::cross(v2, v0), c2 = glm::cross(v0, v1);
-  const double w0 = glm::dot(d, c0), w1 = glm::dot(d, c1), w2 = glm::dot(d, c2);
-  if (!((w0 >= 0 && w1 >= 0 && w2 >= 0) || (w0 <= 0 && w1 <= 0 && w2 <= 0))) return false;
-  const double det = w0 + w1 + w2;
-  const double volume = glm::dot(v0, c0);
-  const double distance = volume / det;
-  if (!(distance > 0) || !std::isfinite(distance)) return false;
-  crossing = {distance, det, {w0 / det, w1 / det, w2 / det}, 0};
-  const double reach = std::max({largest(v0), largest(v1), largest(v2)});
-  const double height = std::abs(volume) / glm::length(c0 + c1 + c2);
-  crossing.slack = std::min(4e-6 + 2e-6 * reach / height, 1e-2);
-  return true;
 }
 
 auto rank(const RayHit& hit) {
@@ -361,6 +318,49 @@ bool RayGeometry::is_blocked(const Vec3& origin, const Vec3& direction, double n
   ray.mask = ~0u;
   rtcOccluded1(impl_->scene.get(), &query.context, &ray);
   return ray.tfar < 0;
+}
+
+namespace {
+
+struct PointLookup {
+  const RayGeometry* geometry;
+  std::vector<RayHit>* hits;
+  Vec3 point;
+  double tolerance;
+};
+
+} // namespace
+
+void RayGeometry::triangles_at(const Vec3& point, double tolerance, std::vector<RayHit>& hits) const {
+  hits.clear();
+  RTCPointQuery query{};
+  query.x = static_cast<float>(impl_->scale * point.x);
+  query.y = static_cast<float>(impl_->scale * point.y);
+  query.z = static_cast<float>(impl_->scale * point.z);
+  // Rounded to float32, the point moves; the triangles grew by `inflation` of their coordinates, which covers it.
+  query.radius = static_cast<float>(impl_->scale * (tolerance + 1e-6 * largest(point)));
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  PointLookup lookup{this, &hits, point, tolerance};
+  const RTCPointQueryFunction visit = [](RTCPointQueryFunctionArguments* args) {
+    PointLookup& wanted = *static_cast<PointLookup*>(args->userPtr);
+    Vec3 v[3];
+    RayHit hit;
+    hit.part = &wanted.geometry->impl_->load(args->primID, v, hit.triangle);
+    const bool from_behind = glm::dot(glm::cross(v[1] - v[0], v[2] - v[0]), v[0]) > 0;
+    if (from_behind && !hit.part->look->double_sided) return false;
+    const auto weights = weights_near(v, wanted.point, wanted.tolerance);
+    if (!weights) return false;
+    std::copy(weights->begin(), weights->end(), hit.weights);
+    wanted.hits->push_back(hit);
+    return false;
+  };
+  rtcPointQuery(impl_->scene.get(), &query, &context, visit, &lookup);
+}
+
+std::optional<std::array<double, 3>> RayGeometry::weights_at(const RayHit& hit, const Vec3& point, double tolerance) const {
+  const Vec3 v[3] = {corner(hit, 0), corner(hit, 1), corner(hit, 2)};
+  return weights_near(v, point, tolerance);
 }
 
 Vec4 interpolate(const Attribute* attribute, const RayHit& hit, const Vec4& fallback) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "domewarp/core/vectors.h"
 #include "domewarp/render/parts.h"
@@ -51,6 +54,14 @@ class RayGeometry {
   /// Whether something stands between `near` and `far` along a unit direction from any point of eye space. Both sides
   /// of every triangle do, and so do masked texels that are there; blended surfaces do not.
   bool is_blocked(const Vec3& origin, const Vec3& direction, double near, double far) const;
+
+  /// The triangles that a point of eye space lies on, to `tolerance`, in no particular order; without culled back faces.
+  /// `weights` are those of the point's projection onto the triangle's plane; `distance` and `order` are not set.
+  void triangles_at(const Vec3& point, double tolerance, std::vector<RayHit>& hits) const;
+
+  /// The point's barycentric weights in the triangle of a hit, as `triangles_at` gives them; nothing when it is farther
+  /// from the triangle than the tolerance.
+  std::optional<std::array<double, 3>> weights_at(const RayHit& hit, const Vec3& point, double tolerance) const;
 
   /// Eye-space corner (0, 1, 2) of the triangle that was hit.
   const Vec3& corner(const RayHit& hit, int i) const;

@@ -45,11 +45,15 @@ Vec3 shadowed_light(const RayWorld& world, const SurfacePoint& point, unsigned& 
 Vec4 shade_hit(const RayWorld& world, const RayHit& hit, unsigned& rays) {
   const SurfacePoint point = surface_point(world, hit);
   const Look& look = *hit.part->look;
-  const bool shadowed = world.shadows && world.lighting.lights && !is_unlit(look, world.lighting);
-  return shade(look, point, shadowed ? shadowed_light(world, point, rays) : light_at(look, point, world.lighting));
+  return shade(look, point, light_at(world, look, point, rays));
 }
 
 } // namespace
+
+Vec3 light_at(const RayWorld& world, const Look& look, const SurfacePoint& point, unsigned& rays) {
+  const bool shadowed = world.shadows && world.lighting.lights && !is_unlit(look, world.lighting);
+  return shadowed ? shadowed_light(world, point, rays) : light_at(look, point, world.lighting);
+}
 
 SurfacePoint surface_point(const RayWorld& world, const RayHit& hit) {
   const Vec3 corners[3] = {world.geometry.corner(hit, 0), world.geometry.corner(hit, 1), world.geometry.corner(hit, 2)};

@@ -30,6 +30,9 @@ struct RaySample {
 /// Traces at most RayGeometry::packet_size unit directions; quickest where they go the same way.
 void trace(const RayWorld& world, std::span<const Vec3> directions, RaySample* samples);
 
+/// `light` of shading.h with the shadows of the world, if it has any. @param rays raised by the number of shadow rays
+Vec3 light_at(const RayWorld& world, const Look& look, const SurfacePoint& point, unsigned& rays);
+
 /// What shading sees at a hit.
 SurfacePoint surface_point(const RayWorld& world, const RayHit& hit);
 

@@ -59,7 +59,7 @@ TEST(Shading, NamesTheLightsThatCannotBeKept) {
 
 TEST(Shading, WritesNoLightsForUnlitMaterials) {
   ConvertOptions options = looking_along({0, 0, -1});
-  options.unlit = true;
+  options.shading = Shading::unlit;
   ConvertReport report;
   EXPECT_TRUE(convert(lit_square(), options, report).lights.empty());
 }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Based on: signed volumes after Kensler and Shirley, Optimizing Ray-Triangle Intersection, 2006.
+#include "domewarp/render/triangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace domewarp {
+
+namespace {
+
+constexpr double longest_mitre = 1000;
+
+} // namespace
+
+double largest(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+void inflate(const Vec3 (&v)[3], double margin, Vec3 (&out)[3]) {
+  const Vec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
+  const double area = glm::length(normal);
+  Vec3 outward[3];
+  for (int i = 0; i < 3; ++i) outward[i] = glm::normalize(glm::cross(v[(i + 1) % 3] - v[i], normal / area));
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& a = outward[i];
+    const Vec3& b = outward[(i + 2) % 3];
+    const double mitre = 1 / std::max(1 + glm::dot(a, b), 2 / (longest_mitre * longest_mitre));
+    out[i] = v[i] + margin * mitre * (a + b);
+  }
+}
+
+bool intersect(const Vec3& d, const Vec3& v0, const Vec3& v1, const Vec3& v2, Crossing& crossing) {
+  const Vec3 c0 = glm::cross(v1, v2), c1 = glm::cross(v2, v0), c2 = glm::cross(v0, v1);
+  const double w0 = glm::dot(d, c0), w1 = glm::dot(d, c1), w2 = glm::dot(d, c2);
+  if (!((w0 >= 0 && w1 >= 0 && w2 >= 0) || (w0 <= 0 && w1 <= 0 && w2 <= 0))) return false;
+  const double det = w0 + w1 + w2;
+  const double volume = glm::dot(v0, c0);
+  const double distance = volume / det;
+  if (!(distance > 0) || !std::isfinite(distance)) return false;
+  crossing = {distance, det, {w0 / det, w1 / det, w2 / det}, 0};
+  const double reach = std::max({largest(v0), largest(v1), largest(v2)});
+  const double height = std::abs(volume) / glm::length(c0 + c1 + c2);
+  crossing.slack = std::min(4e-6 + 2e-6 * reach / height, 1e-2);
+  return true;
+}
+
+std::optional<std::array<double, 3>> weights_near(const Vec3 (&v)[3], const Vec3& p, double tolerance) {
+  const Vec3 normal = glm::cross(v[1] - v[0], v[2] - v[0]);
+  const double area = glm::length(normal);
+  if (!(area > 0) || !(std::abs(glm::dot(normal, p - v[0])) <= tolerance * area)) return std::nullopt;
+  std::array<double, 3> weights{};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& a = v[(i + 1) % 3];
+    const Vec3 side = v[(i + 2) % 3] - a;
+    const double from_side = glm::dot(normal, glm::cross(side, p - a)) / area; // times the side's length
+    if (from_side < -tolerance * glm::length(side)) return std::nullopt;
+    weights[std::size_t(i)] = from_side / area;
+  }
+  return weights;
+}
+
+} // namespace domewarp
