@@ -13,9 +13,11 @@ void add_batch_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_convert_command(CLI::App& app, int& status);
 void add_curve_command(CLI::App& app, int& status);
+void add_figures_command(CLI::App& app, int& status);
 void add_inspect_command(CLI::App& app, int& status);
 void add_project_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);
 void add_scenes_command(CLI::App& app, int& status);
+void add_simulate_command(CLI::App& app, int& status);
 
 } // namespace domewarp

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "domewarp/core/files.h"
 #include "domewarp/gltf/read.h"
 #include "domewarp/render/compare.h"
+#include "domewarp/render/compare_page.h"
 #include "domewarp/render/compare_pictures.h"
 #include "domewarp/render/drawn_crossings.h"
 #include "domewarp/render/rasterise.h"
@@ -27,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string scene, warped, out;
+  std::string scene, warped, out, html;
   ReadOptions read;
   std::optional<double> max_displacement;
   std::optional<std::size_t> max_pinholes;
@@ -60,6 +62,27 @@ void write_pictures(const fs::path& folder, const Comparison& c) {
   write_picture(folder / "cracks.png", crack_picture(c.report, c.warped));
   write_picture(folder / "wireframe.png", wireframe_picture(c.warped, c.screen));
   write_file(folder / "compare.json", to_json(c.report) + "\n");
+}
+
+/// How far from its place anything may be drawn: the file's tolerance and a step of the rasteriser's grid.
+double bound_px(const Record& record, const Frame& warped) {
+  return record.tolerance_px + (warped.subpixel_bits >= 0 ? std::exp2(-warped.subpixel_bits) : subpixel_step);
+}
+
+void write_page(const std::string& path, const Arguments& arguments, const Comparison& c) {
+  ComparePage page;
+  page.scene = fs::path(arguments.scene).filename().string();
+  page.warped = fs::path(arguments.warped).filename().string();
+  page.renderer = c.warped.renderer;
+  page.tolerance_px = c.record.tolerance_px;
+  page.bound_px = bound_px(c.record, c.warped);
+  page.reference = colours(c.reference);
+  page.rasterised = colours(c.warped);
+  page.difference = difference_picture(c.reference, c.warped);
+  page.displacement = displacement_picture(c);
+  page.cracks = crack_picture(c.report, c.warped);
+  page.wireframe = wireframe_picture(c.warped, c.screen);
+  write_file(path, compare_page(page, c.report, Surface(c.record.surface, screen_radius(c.record.raster))));
 }
 
 std::string at_seams(std::size_t count) {
@@ -102,15 +125,17 @@ bool is_kept(const Arguments& arguments, const CompareReport& report) {
   return kept;
 }
 
-CompareOptions compare_options(const Record& record) {
+CompareOptions compare_options(const Record& record, const Frame& warped) {
   CompareOptions options;
-  options.bound_px = record.tolerance_px + subpixel_step;
+  options.bound_px = bound_px(record, warped);
   options.depth_bound = 2 * record.depth_error + 1e-6; // each of two surfaces may be off by it; the rest is rounding
   return options;
 }
 
 Comparison compare(const Arguments& arguments) {
-  const Scene warped = read_scene(arguments.warped, arguments.read);
+  ReadOptions as_it_is; // the scene and the pose are the original's
+  as_it_is.allow_external = arguments.read.allow_external;
+  const Scene warped = read_scene(arguments.warped, as_it_is);
   Comparison c;
   c.record = parse_record(warped.extras, arguments.warped);
   const Record& record = c.record;
@@ -131,13 +156,14 @@ Comparison compare(const Arguments& arguments) {
   const ExactRays exact(scene, record.view);
   const CrossingsAlong crossings =
       keep_drawn(scene, [&exact](const Vec3& direction) { return exact.crossings(direction); }, record.near);
-  c.report = compare_frames(c.reference, c.warped, c.screen, surface, map, record.raster, crossings, compare_options(record));
+  c.report = compare_frames(c.reference, c.warped, c.screen, surface, map, record.raster, crossings, compare_options(record, c.warped));
   return c;
 }
 
 int run(const Arguments& arguments) {
   const Comparison c = compare(arguments);
   if (!arguments.out.empty()) write_pictures(arguments.out, c);
+  if (!arguments.html.empty()) write_page(arguments.html, arguments, c);
   std::cout << (arguments.json ? to_json(c.report) + "\n" : to_text(c.report));
   if (!arguments.json && !arguments.out.empty()) std::cout << "pictures      " << arguments.out << "\n";
   return is_kept(arguments, c.report) ? 0 : static_cast<int>(ErrorCode::unkept);
@@ -151,10 +177,12 @@ void add_compare_command(CLI::App& app, int& status) {
   command->add_option("SCENE", arguments->scene, "The original scene")->required();
   command->add_option("WARPED", arguments->warped, "The file that convert made of it")->required();
   command->add_option("--out", arguments->out, "Folder for both pictures, their difference, displacement, cracks, wireframe and compare.json")->type_name("DIR");
+  command->add_option("--html", arguments->html, "Write one page with all of it that opens in any browser, offline")->type_name("FILE.html");
   command->add_option_function<std::string>("--max-displacement", [arguments](const std::string& text) {
     arguments->max_displacement = parse_number("--max-displacement", text); }, "Exit with 3 above this many pixels")->type_name("PX");
   command->add_option_function<std::string>("--max-pinholes", [arguments](const std::string& text) {
     arguments->max_pinholes = parse_count("--max-pinholes", text); }, "Exit with 3 above this many uncovered pixels")->type_name("N");
+  add_read_options(*command, arguments->read);
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

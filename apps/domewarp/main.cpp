@@ -47,9 +47,11 @@ int main(int argc, char** argv) {
   domewarp::add_inspect_command(app, status);
   domewarp::add_render_command(app, status);
   domewarp::add_compare_command(app, status);
+  domewarp::add_simulate_command(app, status);
   domewarp::add_curve_command(app, status);
   domewarp::add_project_command(app, status);
   domewarp::add_scenes_command(app, status);
+  domewarp::add_figures_command(app, status);
   try {
     app.parse(join_values(app, argc, argv));
   } catch (const CLI::Success& success) { // --help, --version

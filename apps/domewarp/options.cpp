@@ -32,14 +32,6 @@ std::size_t parse_count(const std::string& option, const std::string& text) {
   return value;
 }
 
-namespace {
-
-double parse_positive(const std::string& option, const std::string& text) {
-  const double value = parse_number(option, text);
-  if (!(value > 0)) throw Error(ErrorCode::usage, option + ": must be greater than 0, got " + text);
-  return value;
-}
-
 Vec3 parse_vector(const std::string& option, const std::string& text) {
   Vec3 v;
   std::size_t begin = 0;
@@ -50,6 +42,14 @@ Vec3 parse_vector(const std::string& option, const std::string& text) {
     begin = comma + 1;
   }
   return v;
+}
+
+namespace {
+
+double parse_positive(const std::string& option, const std::string& text) {
+  const double value = parse_number(option, text);
+  if (!(value > 0)) throw Error(ErrorCode::usage, option + ": must be greater than 0, got " + text);
+  return value;
 }
 
 Raster parse_size(const std::string& option, const std::string& text) {
@@ -85,6 +85,10 @@ CLI::Option* add_choice(CLI::App& app, const char* name, const std::string& help
 
 void add_read_options(CLI::App& app, ReadOptions& read) {
   app.add_option("--scene", read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
+  add_pose_options(app, read);
+}
+
+void add_pose_options(CLI::App& app, ReadOptions& read) {
   add(app, "--animation", "Animation to pose the scene with (default: the rest pose)", "NAME|INDEX", [&read](const std::string& text) {
     if (text.empty()) throw Error(ErrorCode::usage, "--animation: is empty");
     read.animation = text;
@@ -137,7 +141,8 @@ void require_surface(const SurfaceOptions& surface) {
 }
 
 void add_raster_options(CLI::App& app, Raster& raster) {
-  add(app, "--size", "Size of the picture (default 4096x4096)", "WxH", [&raster](const std::string& text) { raster = parse_size("--size", text); });
+  const std::string size = std::to_string(raster.width) + "x" + std::to_string(raster.height);
+  add(app, "--size", "Size of the picture (default " + size + ")", "WxH", [&raster](const std::string& text) { raster = parse_size("--size", text); });
 }
 
 void add_method_option(CLI::App& app, Method& method) {

@@ -17,8 +17,12 @@ double parse_number(const std::string& option, const std::string& text);
 /// A whole number >= 0. @throws Error(usage)
 std::size_t parse_count(const std::string& option, const std::string& text);
 
+/// "X,Y,Z". @throws Error(usage)
+Vec3 parse_vector(const std::string& option, const std::string& text);
+
 /// Each adds a group of options that several commands share. Bad values throw Error(usage) while the line is parsed.
 void add_read_options(CLI::App& app, ReadOptions& read);
+void add_pose_options(CLI::App& app, ReadOptions& read); ///< those of the above without --scene
 void add_view_options(CLI::App& app, ViewOptions& view);
 void add_surface_options(CLI::App& app, SurfaceOptions& surface);
 void add_raster_options(CLI::App& app, Raster& raster);

@@ -65,17 +65,12 @@ RasterOptions raster_options(const Arguments& arguments, const Progress& progres
   return options;
 }
 
-void refuse_lights(const Arguments& arguments) {
-  if (arguments.lights)
-    throw Error(ErrorCode::usage, arguments.input + ": is warped and its lights are not in it; --lights needs the original scene");
-}
-
 /// A warped scene is drawn through the camera in it, and so is a raw one when no surface is named; else it is converted
 /// first.
 void draw(const Scene& scene, const Arguments& arguments, const Raster& raster, const Progress& progress, const FrameSink& sink) {
   RasterOptions options = raster_options(arguments, progress);
   if (!scene.extras.empty()) {
-    refuse_lights(arguments);
+    if (!scene.cameras.empty()) options.lights = lights_for(scene, glm::inverse(scene.cameras.front().world), arguments);
     return rasterise(scene, raster, options, sink);
   }
   if (!has_surface(arguments.options.surface)) {

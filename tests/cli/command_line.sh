@@ -58,6 +58,20 @@ refuses 4 nowhere convert "$scene" -o nowhere/out.glb --curve '1-r^2' --quiet
 printf '{"scenes": [\n {"input": "a.glb", "tolerance": -1}]}' >in_jobs.json
 refuses 2 in_jobs.json:2:21 batch in_jobs.json --out out --lens equidistant
 refuses 2 extras compare "$scene" "$scene"
+refuses 1 --animation compare "$scene" "$scene" --animation=
+refuses 1 --samples render "$scene" -o out.png --curve '1-r^2' --size 32x32 --samples 0
+refuses 1 --samples render "$scene" -o out.png --curve '1-r^2' --size 32x32 --renderer gl --samples 4
+refuses 1 --hot-spot render "$scene" -o out.png --curve '1-r^2' --size 32x32 --renderer gl --hot-spot hot.png
+refuses 1 --supersample render "$scene" -o out.png --curve '1-r^2' --size 32x32 --supersample 2
+refuses 1 --lights render "$scene" -o out.png --curve '1-r^2' --size 32x32 --shadows
+refuses 2 lights render "$scene" -o out.png --curve '1-r^2' --size 32x32 --lights
+refuses 1 .bmp render "$scene" -o out.bmp --curve '1-r^2' --size 32x32
+refuses 2 missing.png simulate missing.png -o out.png --curve '1-r^2'
+refuses 1 --lens simulate missing.png -o out.png
+refuses 1 --scene simulate missing.png -o out.png --curve '1-r^2' --direct direct.png
+refuses 1 --look simulate missing.png -o out.png --curve '1-r^2' --look 0,0,-1 --azimuth 3
+refuses 1 --look simulate missing.png -o out.png --curve '1-r^2' --look 1,2
+refuses 1 .jpg simulate missing.png -o out.jpg --curve '1-r^2'
 
 same() { # NAME EXPECTED GOT
   check "$1: expected '$2', got '$3'" [ "$2" = "$3" ]
@@ -99,6 +113,32 @@ same "stopped by --max-triangles" 3 $?
 "$domewarp" convert "$scene" -o one.glb --curve '1-r^2' --threads 1 --quiet
 "$domewarp" convert "$scene" -o two.glb --curve '1-r^2' --threads 2 --quiet
 check "same bytes for 1 and 2 threads" cmp -s one.glb two.glb
+
+# Pictures of rays: samples change the picture and are shown where they went; the same for any number of threads.
+quick_render="render $scene --curve 1-r^2 --size 160x120 --quiet"
+"$domewarp" $quick_render -o plain.png && "$domewarp" $quick_render -o fine.png --samples 8 --hot-spot hot.png --threads 1 && "$domewarp" $quick_render -o fine2.png --samples 8 --threads 2
+same "render with samples" 0 $?
+check "samples make another picture" [ "$(cmp -s plain.png fine.png; echo $?)" = 1 ]
+check "the same picture for 1 and 2 threads" cmp -s fine.png fine2.png
+check "a hot-spot picture" [ -s hot.png ]
+"$domewarp" $quick_render -o layers.exr && check "an EXR picture" [ "$(head -c 4 layers.exr | od -An -tx1 | tr -d ' ')" = 762f3101 ]
+"$domewarp" $quick_render -o drawn.png --renderer gl --supersample 2
+same "render by OpenGL, supersampled" 0 $?
+
+# The dome: seen from the eye a picture for it shows the scene itself; one for another projector does not.
+"$domewarp" render "$scene" -o dome.png --curve '3-sqrt(4+6*r^2)' --projector 5 --size 480x360 --samples 16 --quiet
+look="--size 320x240 --azimuth 15 --elevation -10 --scene $scene --max-edge-error 0.2"
+"$domewarp" simulate dome.png -o eye.png --curve '3-sqrt(4+6*r^2)' --projector 5 $look --direct direct.png --difference difference.png --outside outside.png >stdout
+same "simulate" 0 $?
+check "simulate says how far edges are" grep -q '^edges .* places, median' stdout
+check "pictures of simulate" [ -s eye.png -a -s direct.png -a -s difference.png -a -s outside.png ]
+"$domewarp" simulate dome.png -o eye2.png --curve '3-sqrt(4+6*r^2)' --projector 2 $look >stdout 2>stderr
+same "simulate with another projector" 3 $?
+check "the exceeded limit is named" grep -q -- --max-edge-error stderr
+check "simulate --json" grep -q '"median":' <("$domewarp" simulate dome.png -o eye2.png --curve '3-sqrt(4+6*r^2)' --projector 5 --size 320x240 --scene "$scene" --json)
+"$domewarp" figures --out figures --quick --quiet
+same "figures" 0 $?
+check "all figures" [ "$(ls figures/figure_*.png | wc -l)" = 50 -a -s figures/figures.png ]
 
 # Batch: structure kept, a bad scene does not stop the rest, a second run does nothing, shards cover all, killed runs resume.
 mkdir -p in_many/sub

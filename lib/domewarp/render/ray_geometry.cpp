@@ -9,6 +9,7 @@
 #include "domewarp/render/ray_geometry.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -50,9 +51,8 @@ bool is_finite(const Vec3& v) {
 /// The nearness that ties are judged by: 2^-44 of the distance is coarser than the rounding of `intersect` for all but
 /// grazing triangles, and finer than anything a picture shows.
 double rounded_distance(double distance) {
-  int exponent = 0;
-  const double mantissa = std::frexp(distance, &exponent);
-  return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
+  constexpr std::uint64_t dropped = (std::uint64_t{1} << 9) - 1; // of 53 bits
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(distance) + (dropped + 1) / 2) & ~dropped);
 }
 
 auto rank(const RayHit& hit) {

@@ -98,8 +98,6 @@ const ScreenTriangle* find_triangle(const Screen& screen, std::uint32_t object, 
 
 namespace {
 
-constexpr std::int64_t steps = 256; ///< of the rasteriser's grid, per pixel
-
 using GridPoint = std::array<std::int64_t, 2>;
 
 /// Twice the signed area of (a, b, p) in grid steps, positive when p is to the right of a -> b on the screen.
@@ -112,14 +110,16 @@ bool is_top_left(const GridPoint& a, const GridPoint& b) { return b[1] < a[1] ||
 
 /// A triangle on the grid, clockwise on the screen.
 struct GridTriangle {
+  std::int64_t steps = 256; ///< of the rasteriser's grid, per pixel
   GridPoint corners[3];
   int order[3] = {0, 1, 2}; ///< of the corners in the ScreenTriangle
   std::int64_t area = 0;
 };
 
 /// @return false for one without area or farther out than the grid reaches
-bool snap(const ScreenTriangle& triangle, GridTriangle& grid) {
+bool snap(const ScreenTriangle& triangle, std::int64_t steps, GridTriangle& grid) {
   constexpr double farthest = 1 << 20;
+  grid.steps = steps;
   for (int k = 0; k < 3; ++k) {
     const Vec2& p = triangle.corners[k].pixel;
     if (!(std::abs(p.x) < farthest && std::abs(p.y) < farthest)) return false;
@@ -136,7 +136,7 @@ bool snap(const ScreenTriangle& triangle, GridTriangle& grid) {
 
 /// @param weights corners' shares at the pixel's centre
 bool covers(const GridTriangle& grid, int column, int row, double (&weights)[3]) {
-  const GridPoint p = {column * steps + steps / 2, row * steps + steps / 2};
+  const GridPoint p = {column * grid.steps + grid.steps / 2, row * grid.steps + grid.steps / 2};
   for (int k = 0; k < 3; ++k) {
     const GridPoint& a = grid.corners[(k + 1) % 3];
     const GridPoint& b = grid.corners[(k + 2) % 3];
@@ -161,7 +161,7 @@ Vec3 source_at(const ScreenTriangle& triangle, const double (&weights)[3]) {
 /// First and last pixel whose centres lie between the three coordinates and inside [first, last].
 std::array<int, 2> pixel_range(const GridTriangle& grid, std::size_t axis, int first, int last) {
   const auto [low, high] = std::minmax({grid.corners[0][axis], grid.corners[1][axis], grid.corners[2][axis]});
-  const auto pixel = [](std::int64_t at) { return at >= 0 ? at / steps : -((-at + steps - 1) / steps); };
+  const auto pixel = [steps = grid.steps](std::int64_t at) { return at >= 0 ? at / steps : -((-at + steps - 1) / steps); };
   return {static_cast<int>(std::max<std::int64_t>(pixel(low), first)),
           static_cast<int>(std::min<std::int64_t>(pixel(high), last))};
 }
@@ -171,7 +171,7 @@ void count_triangle(const ScreenTriangle& triangle, const Frame& frame, double d
   const auto [low, high] = std::minmax(
       {triangle.corners[0].pixel.y, triangle.corners[1].pixel.y, triangle.corners[2].pixel.y});
   GridTriangle grid;
-  if (!triangle.opaque || high < top || low > bottom || !snap(triangle, grid)) return;
+  if (!triangle.opaque || high < top || low > bottom || !snap(triangle, std::int64_t{1} << (frame.subpixel_bits >= 1 ? frame.subpixel_bits : 8), grid)) return;
   const auto [first_row, last_row] = pixel_range(grid, 1, top, bottom - 1);
   const auto [first, last] = pixel_range(grid, 0, 0, frame.width - 1);
   double weights[3];

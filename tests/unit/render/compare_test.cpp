@@ -9,6 +9,7 @@
 
 #include "domewarp/audit/exact_rays.h"
 #include "domewarp/core/errors.h"
+#include "domewarp/render/compare_page.h"
 #include "domewarp/render/compare_pictures.h"
 #include "domewarp/render/drawn_crossings.h"
 #include "domewarp/render/rasterise.h"
@@ -262,6 +263,43 @@ TEST_F(Compare, TheWireframeLiesOnTheTrianglesOfThePicture) {
   }
   EXPECT_GT(white, 500u);
   EXPECT_EQ(white + kept, frame.object.size());
+}
+
+std::size_t count_of(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(Compare, PageNeedsNothingElse) {
+  const Scene warped = prewarp(source, display, 64);
+  const Frame frame = rasterise(warped, display.raster, {});
+  const Screen screen = make_screen(warped, display.raster);
+  const CompareReport report = judge.frames(frame, screen);
+  ComparePage page;
+  page.scene = "<a \"x\">&";
+  page.warped = "warped.glb";
+  page.renderer = frame.renderer;
+  page.reference = colours(reference);
+  page.rasterised = colours(frame);
+  page.difference = difference_picture(reference, frame);
+  page.displacement = displacement_picture(report, frame.width, frame.height, 1);
+  page.cracks = crack_picture(report, frame);
+  page.wireframe = wireframe_picture(frame, screen);
+  const std::string html = compare_page(page, report, display.surface);
+  EXPECT_EQ(count_of(html, "src="), 6u);
+  EXPECT_EQ(count_of(html, "src=\"data:image/png;base64,iVBOR"), 6u);
+  for (const char* word : {"http:", "https:", "href=", "url(", "@import", "<link", "<iframe", "fetch", "<a "})
+    EXPECT_EQ(count_of(html, word), 0u) << word;
+  EXPECT_EQ(count_of(html, "&lt;a &quot;x&quot;&gt;&amp;"), 2u); // title and heading
+  EXPECT_GE(count_of(html, "<svg"), 1u);
+  EXPECT_EQ(count_of(html, "class=\"figure bad\""), 0u);
+  EXPECT_GE(count_of(html, "class=\"figure good\""), 4u);
+
+  CompareReport bad = report;
+  bad.displacement_px.max = 0.51;
+  bad.pinholes = 1;
+  EXPECT_EQ(count_of(compare_page(page, bad, display.surface), "class=\"figure bad\""), 2u);
 }
 
 } // namespace
