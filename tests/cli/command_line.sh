@@ -64,7 +64,8 @@ refuses 1 --samples render "$scene" -o out.png --curve '1-r^2' --size 32x32 --re
 refuses 1 --hot-spot render "$scene" -o out.png --curve '1-r^2' --size 32x32 --renderer gl --hot-spot hot.png
 refuses 1 --supersample render "$scene" -o out.png --curve '1-r^2' --size 32x32 --supersample 2
 refuses 1 --lights render "$scene" -o out.png --curve '1-r^2' --size 32x32 --shadows
-refuses 2 lights render "$scene" -o out.png --curve '1-r^2' --size 32x32 --lights
+"$domewarp" convert "$scene" -o in_unlit.glb --curve "1-r^2" --size 32x32 --unlit --quiet >/dev/null
+refuses 2 lights render in_unlit.glb -o out.png --renderer gl --lights
 refuses 1 .bmp render "$scene" -o out.bmp --curve '1-r^2' --size 32x32
 refuses 2 missing.png simulate missing.png -o out.png --curve '1-r^2'
 refuses 1 --lens simulate missing.png -o out.png

@@ -236,7 +236,7 @@ Pixels make_step(double edge, double blur) {
 TEST(Edges, MovedAndBlurredStepIsMeasured) {
   const auto twice = [](const Vec2& p) { return std::optional<Vec2>(2.0 * p); }; // a source of twice the resolution
   for (const double shift : {-1.25, -0.3, 0.0, 0.4, 1.0})
-    for (const double blur : {1.0, 3.0}) // whole pixels: others shift the sum of the samples {
+    for (const double blur : {1.0, 3.0}) { // whole pixels: others shift the sum of the samples
       const EdgeReport edges = compare_edges(make_step(20.2 + shift, blur), make_step(20.2, 1), twice);
       ASSERT_GT(edges.count, 0u);
       EXPECT_NEAR(edges.median, std::abs(2 * shift), 0.03);
