@@ -26,6 +26,7 @@ struct Result {
 Result run_convert_bench(const Options& options);
 Result run_live_bench(const Options& options);
 Result run_map_bench(const Options& options);
+Result run_mesh_bench(const Options& options);
 Result run_render_bench(const Options& options);
 Result run_thesis_bench(const Options& options);
 
@@ -40,6 +41,7 @@ inline constexpr Bench benches[] = {
     {"convert", "Whole conversions of 10^3 to 10^7 triangles: time and memory against reading and writing alone.", run_convert_bench},
     {"live", "Frames per second of warping all vertices for a moving eye, and how far it may move before refining again.", run_live_bench},
     {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
+    {"mesh", "Refinement: triangles against goals, rivals and a lower bound, true against certified error, speed, growth, what skipping saves.", run_mesh_bench},
     {"render", "Primary rays per second of the reference ray tracer beside Embree's own on the same rays.", run_render_bench},
     {"thesis", "Tables 2 and 3, Figures 25 and 26 of the thesis: frames per second and points, beside its figures.", run_thesis_bench},
 };

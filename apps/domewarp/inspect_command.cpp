@@ -19,6 +19,7 @@ namespace {
 struct Arguments {
   std::string file, source;
   ReadOptions read;
+  std::optional<double> hausdorff;
   bool json = false, strict = false;
 };
 
@@ -37,7 +38,10 @@ int run(const Arguments& arguments) {
     if (!picture) throw Error(ErrorCode::input, arguments.file + ": was not written by domewarp convert, so --source cannot be compared with it");
     source = read_scene(arguments.source, arguments.read);
   }
-  const InspectReport report = inspect(scene, {picture ? &*picture : nullptr, source ? &*source : nullptr});
+  if (arguments.hausdorff && !source) throw Error(ErrorCode::usage, "--hausdorff: needs --source");
+  InspectOptions options{picture ? &*picture : nullptr, source ? &*source : nullptr};
+  options.hausdorff_px = arguments.hausdorff;
+  const InspectReport report = inspect(scene, options);
   for (const std::string& warning : scene.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
   std::cout << (arguments.json ? to_json(report) : to_text(report));
   if (!arguments.strict || is_sound(report)) return 0;
@@ -53,6 +57,8 @@ void add_inspect_command(CLI::App& app, int& status) {
   command->add_option("FILE", arguments->file, "The scene (.glb or .gltf)")->required();
   command->add_option("--source", arguments->source, "The scene that FILE was converted from: tells its open edges apart, samples lost area and errors")
       ->type_name("SCENE");
+  command->add_option_function<std::string>("--hausdorff", [arguments](const std::string& text) { arguments->hausdorff = parse_positive("--hausdorff", text); },
+           "Measure how far the exact warp of --source is from FILE, to this error in pixels (slow)")->type_name("PX");
   add_read_options(*command, arguments->read);
   command->add_flag("--strict", arguments->strict, "Exit with 3 when a warped file has cracks, flips or lost area");
   command->add_flag("--json", arguments->json, "Print the statistics as JSON");

@@ -32,6 +32,12 @@ std::size_t parse_count(const std::string& option, const std::string& text) {
   return value;
 }
 
+double parse_positive(const std::string& option, const std::string& text) {
+  const double value = parse_number(option, text);
+  if (!(value > 0)) throw Error(ErrorCode::usage, option + ": must be greater than 0, got " + text);
+  return value;
+}
+
 Vec3 parse_vector(const std::string& option, const std::string& text) {
   Vec3 v;
   std::size_t begin = 0;
@@ -45,12 +51,6 @@ Vec3 parse_vector(const std::string& option, const std::string& text) {
 }
 
 namespace {
-
-double parse_positive(const std::string& option, const std::string& text) {
-  const double value = parse_number(option, text);
-  if (!(value > 0)) throw Error(ErrorCode::usage, option + ": must be greater than 0, got " + text);
-  return value;
-}
 
 Raster parse_size(const std::string& option, const std::string& text) {
   const std::size_t x = text.find('x');
@@ -152,9 +152,8 @@ void add_method_option(CLI::App& app, Method& method) {
 
 /// May be given several times.
 void add_no_skip_option(CLI::App& app, SkipOptions& skip) {
-  const std::map<std::string, bool SkipOptions::*> names = {{"outside-view", &SkipOptions::outside_view},
-                                                            {"back-faces", &SkipOptions::back_faces},
-                                                            {"zero-area", &SkipOptions::zero_area}};
+  std::map<std::string, bool SkipOptions::*> names;
+  for (const SkipName& skip_name : skip_names) names[skip_name.name] = skip_name.member;
   add_choice<bool SkipOptions::*>(app, "--no-skip", "Do work that the picture does not need, to measure what skipping it saves; may be repeated",
                                   names, [&skip](bool SkipOptions::*member) { skip.*member = false; })
       ->trigger_on_parse();
@@ -191,6 +190,8 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
                       {{"keep", Shading::keep}, {"unlit", Shading::unlit}, {"bake", Shading::bake}},
                       [&options](Shading shading) { options.shading = shading; });
   group->add_flag_callback("--unlit", [&options] { options.shading = Shading::unlit; }, "The same as --shading unlit: mark every material KHR_materials_unlit");
+  group->add_flag("--cull-hidden", options.cull_hidden,
+                  "Leave out triangles that no ray at twice the picture's density reaches within a pixel (opens edges: inspect --strict will say so)");
   group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");
 }
 

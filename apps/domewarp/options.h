@@ -14,6 +14,9 @@ namespace domewarp {
 /// A finite number, the whole text. @throws Error(usage) naming the option and the text.
 double parse_number(const std::string& option, const std::string& text);
 
+/// The same, > 0.
+double parse_positive(const std::string& option, const std::string& text);
+
 /// A whole number >= 0. @throws Error(usage)
 std::size_t parse_count(const std::string& option, const std::string& text);
 

@@ -80,6 +80,7 @@ InspectReport inspect(const Scene& scene, const InspectOptions& options) {
   const Raster raster = options.picture != nullptr ? options.picture->raster : Raster{};
   report.cracks = find_cracks(drawn, provenance, perspective, raster.height, options.picture, source ? &*source : nullptr);
   if (source) report.coverage = measure_coverage(drawn, provenance, *options.picture, *source, options.samples);
+  if (source && options.hausdorff_px) report.hausdorff = measure_hausdorff(drawn, *options.picture, *source, *options.hausdorff_px);
   return report;
 }
 

@@ -7,6 +7,7 @@
 
 #include "domewarp/audit/coverage.h"
 #include "domewarp/audit/cracks.h"
+#include "domewarp/audit/hausdorff.h"
 
 namespace domewarp {
 
@@ -26,12 +27,14 @@ struct InspectReport {
   double max_gap = 0;               ///< largest distance of such a vertex from its edge, scene units
   std::optional<CrackReport> cracks; ///< only for warped files: those with a picture or _SOURCE_POSITION
   std::optional<CoverageReport> coverage; ///< only where picture and source are known
+  std::optional<HausdorffReport> hausdorff; ///< only where it was asked for
 };
 
 struct InspectOptions {
   const Picture* picture = nullptr; ///< what the file says about the picture it draws
   const Scene* source = nullptr;    ///< the scene it was made from
   std::size_t samples = 50'000;     ///< of the source's triangles
+  std::optional<double> hausdorff_px = std::nullopt; ///< measure the Hausdorff distance to this error (hausdorff.h); needs picture and source
 };
 
 /// Shares no code with refinement: edges by sorting, T-junctions by CGAL. Degenerate triangles have no edges here.

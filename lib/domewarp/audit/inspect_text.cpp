@@ -84,6 +84,10 @@ std::string to_json(const InspectReport& report) {
                {"materials", report.materials}};
   if (report.cracks) json["cracks"] = cracks_json(*report.cracks);
   if (report.coverage) json["coverage"] = coverage_json(*report.coverage);
+  if (report.hausdorff)
+    json["hausdorff"] = {{"distance_px", report.hausdorff->distance_px},
+                         {"error_px", report.hausdorff->error_px},
+                         {"exact_triangles", report.hausdorff->exact_triangles}};
   return json.dump(2) + "\n";
 }
 
@@ -105,6 +109,10 @@ std::string to_text(const InspectReport& report) {
   if (report.t_junctions > 0) rows.add("largest gap at one", report.max_gap, " scene units");
   if (report.cracks) add_cracks(rows, *report.cracks);
   if (report.coverage) add_coverage(rows, *report.coverage);
+  if (report.hausdorff) {
+    rows.heading("from " + std::to_string(report.hausdorff->exact_triangles) + " pieces of the exact warp");
+    rows.add("Hausdorff distance", report.hausdorff->distance_px, " px or less");
+  }
   return rows.text();
 }
 

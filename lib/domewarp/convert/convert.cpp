@@ -2,8 +2,11 @@
 #include "domewarp/convert/convert.h"
 
 #include <chrono>
+#include <optional>
 #include <sstream>
 
+#include "domewarp/convert/hidden.h"
+#include "domewarp/convert/read_attributes.h"
 #include "domewarp/convert/record.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/memory.h"
@@ -48,9 +51,8 @@ void check_shading(const ConvertOptions& options) {
   if (options.bake.shadows && options.shading != Shading::bake) throw Error(ErrorCode::usage, "--shadows: needs --shading bake");
 }
 
-Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report) {
+Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, RefineOptions refine_options, const Display& display, ConvertReport& report) {
   LightBaker baker(scene, report.view, options.bake);
-  RefineOptions refine_options = options.refine;
   baker.attach(refine_options);
   Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
   report.baked = baker.finish(warped);
@@ -88,8 +90,20 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   report.expected_points = expected_points(scene, options);
 
   tell(progress, "refine");
-  Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, display, report)
-                                                  : refine(scene, report.view, display.surface, display.map, options.raster, options.refine, report.refine);
+  RefineOptions refine_options = options.refine;
+  if (!refine_options.reads) refine_options.reads = attribute_reader(scene, options.shading == Shading::unlit);
+  std::optional<SeenDepths> seen;
+  if (options.cull_hidden) {
+    tell(progress, "hidden");
+    const Clock::time_point rays = Clock::now();
+    seen.emplace(scene, report.view, display.surface, options.raster);
+    report.hidden_ms = ms_since(rays);
+    const double margin = (1 + options.refine.tolerance_px) * pixel_size(options.raster);
+    refine_options.is_hidden = [&seen, margin](const Vec2& low, const Vec2& high, double nearest) { return seen->is_hidden(low, high, margin, nearest); };
+    tell(progress, "refine");
+  }
+  Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, std::move(refine_options), display, report)
+                                                  : refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
   if (options.shading == Shading::unlit)
     for (Material& material : warped.materials) material.unlit = true;
   if (options.shading == Shading::keep) warped.lights = lights_in_eye_space(scene, report.view, report.warnings);

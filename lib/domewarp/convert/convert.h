@@ -29,6 +29,7 @@ struct ConvertOptions {
   RefineOptions refine;
   Shading shading = Shading::keep;
   BakeOptions bake;             ///< for Shading::bake
+  bool cull_hidden = false;     ///< leave out what no ray at twice the picture's density reaches (hidden.h)
 };
 
 /// How many points mapping the scene takes at least, about: what Method::automatic goes by. Refinement evaluates the map
@@ -48,6 +49,7 @@ struct ConvertReport {
   std::vector<std::string> dropped_extensions;
   BakeReport baked;             ///< of Shading::bake
   double map_ms = 0;
+  double hidden_ms = 0;         ///< rays of cull_hidden
   double total_ms = 0;
   double peak_memory_mb = 0;    ///< of the process so far
 };

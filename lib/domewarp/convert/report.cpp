@@ -50,13 +50,13 @@ std::string method_text(const ConvertReport& report, const ConvertOptions& optio
 }
 
 std::size_t culled(const SkipReport& skipped) {
-  return skipped.outside_view + skipped.back_faces + skipped.degenerate + skipped.off_picture + skipped.zero_area;
+  return skipped.outside_view + skipped.back_faces + skipped.degenerate + skipped.off_picture + skipped.zero_area + skipped.hidden;
 }
 
-/// Counts, and under "share" the same over the triangles they are counted among: those of the source, or those refined.
+/// Counts, and under "share" the same over what they are counted among: triangles of the source, those refined, or attributes.
 Json skipped_json(const RefineReport& refine) {
   const SkipReport& skipped = refine.skipped;
-  const std::size_t refined = refine.triangles_out + skipped.off_picture + skipped.zero_area;
+  const std::size_t refined = refine.triangles_out + skipped.off_picture + skipped.zero_area + skipped.hidden;
   Json json, share;
   const auto add = [&](const char* name, std::size_t count, std::size_t among) {
     json[name] = count;
@@ -67,6 +67,8 @@ Json skipped_json(const RefineReport& refine) {
   add("degenerate", skipped.degenerate, refine.triangles_in);
   add("off_picture", skipped.off_picture, refined);
   add("zero_area", skipped.zero_area, refined);
+  add("hidden", skipped.hidden, refined);
+  add("unused_attributes", skipped.unused_attributes, skipped.attributes);
   json["share"] = share;
   return json;
 }
@@ -119,6 +121,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
                      {"clipped_vertices", report.baked.clipped_vertices},
                      {"brightest", report.baked.brightest}};
   json["time_ms"] = {{"map", report.map_ms},
+                     {"hidden", report.hidden_ms},
                      {"topology", refine.soup_ms},
                      {"refine", refine.levels_ms},
                      {"emit", refine.emit_ms},

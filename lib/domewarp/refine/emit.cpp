@@ -10,6 +10,8 @@
 
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/t_junctions.h"
+#include "domewarp/refine/hidden_faces.h"
+#include "domewarp/refine/tolerances.h"
 #include "domewarp/refine/warped_vertex.h"
 
 namespace domewarp {
@@ -20,7 +22,8 @@ namespace {
 /// attributes of the part side by side. A wedge's parents come before it, so one ascending pass is enough.
 class WedgeValues {
 public:
-  WedgeValues(const Scene& scene, const Soup& soup, const RefinedMesh& refined, const std::vector<std::uint8_t>& drawn)
+  WedgeValues(const Scene& scene, const Soup& soup, const RefinedMesh& refined, const std::vector<std::uint8_t>& drawn,
+              const RefineOptions& options)
       : scene_(scene), soup_(soup), refined_(refined), first_derived_(static_cast<std::uint32_t>(soup.wedge_point.size())) {
     const std::uint32_t count = static_cast<std::uint32_t>(soup.extra_wedges.size() + refined.wedges.size());
     std::vector<std::uint8_t> needed(drawn.begin() + first_derived_, drawn.end());
@@ -29,8 +32,9 @@ public:
         for (const std::uint32_t parent : derived(first_derived_ + i).parent)
           if (parent >= first_derived_) needed[parent - first_derived_] = 1;
     for (const SoupPart& part : soup.parts) {
+      written_.push_back(written_attributes(primitive(part), options));
       int stride = 0;
-      for (const Attribute& attribute : primitive(part).attributes) stride += attribute.components;
+      for (const Attribute* attribute : written_.back()) stride += attribute->components;
       stride_.push_back(stride);
     }
     offset_.assign(count, 0);
@@ -53,11 +57,14 @@ public:
       return;
     }
     const std::size_t vertex = wedge - soup_.parts[part].first_wedge;
-    for (const Attribute& attribute : primitive(soup_.parts[part]).attributes)
-      for (int c = 0; c < attribute.components; ++c) *out++ = attribute.values[vertex * attribute.components + c];
+    for (const Attribute* attribute : written_[part])
+      for (int c = 0; c < attribute->components; ++c) *out++ = attribute->values[vertex * attribute->components + c];
   }
 
   int stride(std::uint32_t part) const { return stride_[part]; }
+
+  /// In the order of the values.
+  const std::vector<const Attribute*>& written(std::uint32_t part) const { return written_[part]; }
 
   const Primitive& primitive(const SoupPart& part) const {
     return scene_.meshes[scene_.instances[part.instance].mesh].primitives[part.primitive];
@@ -84,6 +91,7 @@ private:
   const Soup& soup_;
   const RefinedMesh& refined_;
   std::uint32_t first_derived_;
+  std::vector<std::vector<const Attribute*>> written_; ///< per part
   std::vector<int> stride_;          ///< per part
   std::vector<std::size_t> offset_;  ///< per derived wedge
   std::vector<double> values_;
@@ -200,18 +208,17 @@ private:
   }
 
   void fill_attributes(Primitive& out) const {
-    for (const Attribute& attribute : source_.attributes)
-      if (attribute.name != source_position)
-        out.attributes.push_back({attribute.name, attribute.components, std::vector<float>(corners_.size() * attribute.components)});
+    const std::vector<const Attribute*>& attributes = job_.values.written(part_);
+    for (const Attribute* attribute : attributes)
+      out.attributes.push_back({attribute->name, attribute->components, std::vector<float>(corners_.size() * attribute->components)});
     parallel_ranges(corners_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<double> values(job_.values.stride(part_));
       for (std::size_t i = begin; i < end; ++i) {
         job_.values.get(corners_[i].wedge, part_, values.data());
         const double* at = values.data();
-        std::size_t written = 0;
-        for (const Attribute& attribute : source_.attributes) {
-          if (attribute.name != source_position) writer_.write(attribute, at, &out.attributes[written++].values[i * attribute.components]);
-          at += attribute.components;
+        for (std::size_t k = 0; k < attributes.size(); ++k) {
+          writer_.write(*attributes[k], at, &out.attributes[k].values[i * attributes[k]->components]);
+          at += attributes[k]->components;
         }
       }
     });
@@ -255,24 +262,28 @@ private:
 
 } // namespace
 
-double picture_margin(const RefineOptions& options, const Raster& raster) { return (options.tolerance_px + 1) * pixel_size(raster); }
-
 void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedMesh& refined, int orientation,
           const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report) {
   const double margin = picture_margin(options, raster);
   const Vec2 half_extent(aspect(raster) + margin, 1 + margin);
+  std::vector<std::uint8_t> hidden(refined.faces.size());
+  parallel_each(hidden.size(), 256, [&](std::size_t f) { hidden[f] = is_hidden(refined, refined.faces[f], options); });
   std::vector<std::vector<std::uint32_t>> faces_of(soup.parts.size());
   std::vector<std::uint8_t> drawn(soup.wedge_point.size() + soup.extra_wedges.size() + refined.wedges.size(), 0);
   for (std::uint32_t f = 0; f < refined.faces.size(); ++f) {
     const RefinedFace& face = refined.faces[f];
-    if (is_off_picture(refined, face, half_extent)) {
+    if (options.skip.off_picture && is_off_picture(refined, face, half_extent)) {
       ++report.skipped.off_picture;
+      continue;
+    }
+    if (hidden[f]) {
+      ++report.skipped.hidden;
       continue;
     }
     faces_of[soup.faces[face.source].part].push_back(f);
     for (const std::uint32_t wedge : face.wedge) drawn[wedge] = 1;
   }
-  const WedgeValues values(scene, soup, refined, drawn);
+  const WedgeValues values(scene, soup, refined, drawn, options);
   std::vector<std::uint32_t> vertex_of(drawn.size(), no_vertex);
   const EmitJob job{scene, view, soup, refined, options, values, orientation, vertex_of};
   std::vector<PartOutput> outputs(soup.parts.size());
@@ -283,6 +294,7 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
     PartOutput& output = outputs[part];
     report.skipped.zero_area += output.zero_area;
     if (output.primitive.indices.empty()) continue;
+    count_attributes(values.primitive(soup.parts[part]), values.written(static_cast<std::uint32_t>(part)), report.skipped);
     report.triangles_out += output.primitive.indices.size() / 3;
     report.vertices += output.primitive.positions.size();
     report.smallest_depth = report.smallest_depth > 0 ? std::min(report.smallest_depth, output.smallest_depth) : output.smallest_depth;
@@ -292,7 +304,7 @@ void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedM
 }
 
 void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster,
-                 RefineReport& report) {
+                 const RefineOptions& options, RefineReport& report) {
   std::vector<std::uint32_t> faces(refined.edges.size(), 0);
   for (const RefinedFace& face : refined.faces)
     for (const std::uint32_t edge : face.edge) ++faces[edge];
@@ -303,6 +315,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle&
       if (refined.points[edge.a].sides[i] == 0 && refined.points[edge.b].sides[i] == 0) return true;
     return false;
   };
+  const Vec2 half_extent = Vec2(aspect(raster), 1) + picture_margin(options, raster);
   std::vector<float> errors;
   MeshTopology open;
   for (std::size_t e = 0; e < faces.size(); ++e) {
@@ -312,6 +325,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle&
     report.depth_error_max = std::max(report.depth_error_max, static_cast<double>(edge.depth_error));
     report.uncertified_edges += !edge.certified || edge.error * (1 - 1e-6f) > tolerance;
     if (faces[e] != 1 || is_rim(edge)) continue;
+    if (is_beyond(refined.points[edge.a].mapped.image, refined.points[edge.b].mapped.image, half_extent)) continue; // its other face may have been dropped
     open.edges.push_back({edge.a, edge.b, 1});
     if (edge.source != RefinedEdge::none && soup.topology.edges[edge.source].faces == 1) continue;
     ++report.open_edges;

@@ -14,12 +14,10 @@ namespace domewarp {
 void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedMesh& refined, int orientation,
           const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report);
 
-/// Adds what the finished edges of one branch tell: certified errors, and edges that are open without a reason.
+/// Adds what the finished edges of one branch tell: certified errors, and edges within the picture that are open without
+/// a reason.
 void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster,
-                 RefineReport& report);
-
-/// Faces this far outside the image rectangle are dropped, image units.
-double picture_margin(const RefineOptions& options, const Raster& raster);
+                 const RefineOptions& options, RefineReport& report);
 
 /// Adds certified errors (image units; reordered) to the report: the largest of every branch and kind counts.
 void add_errors(std::vector<float>& errors, const Raster& raster, RefineReport& report);

@@ -34,13 +34,13 @@ struct FaceBlock {
   std::vector<std::array<std::uint32_t, 2>> edges; ///< point ids of new inner edges
   std::vector<MappedPoint> points;                 ///< inserted inside faces
   std::vector<Wedge> wedges;
-  std::size_t clipped = 0, uncertified = 0;
+  std::size_t clipped = 0, off_picture = 0, uncertified = 0;
   std::size_t evaluations = 0;
 };
 
 class Refiner {
 public:
-  Refiner(const Soup& soup, const EdgeOracle& oracle) : soup_(soup), oracle_(oracle) {
+  Refiner(const Soup& soup, const EdgeOracle& oracle, const PictureCull* cull) : soup_(soup), oracle_(oracle), cull_(cull) {
     mesh_.points.resize(soup.points.size());
     parallel_each(soup.points.size(), block_size, [&](std::size_t i) { mesh_.points[i] = oracle.locate(soup.points[i]); });
     mesh_.evaluations = soup.points.size();
@@ -50,6 +50,7 @@ public:
     active_.resize(soup.faces.size());
     for (std::uint32_t f = 0; f < active_.size(); ++f)
       active_[f] = {soup.faces[f].point, soup.faces[f].wedge, soup.topology.edges_of[f], f};
+    if (cull != nullptr) mesh_.off_picture = std::erase_if(active_, [&](const RefinedFace& face) { return is_off_picture(face); });
   }
 
   RefinedMesh run(std::size_t max_triangles) {
@@ -113,6 +114,7 @@ private:
   /// Decides about all edges from `first` on and splits those that must be. Returns the first undecided edge.
   std::size_t split_edges(std::size_t first) {
     const std::size_t end = mesh_.edges.size();
+    const std::vector<std::uint8_t> is_used = used_edges(first);
     struct Block {
       std::vector<std::pair<std::uint32_t, MappedPoint>> splits;
       std::size_t evaluations = 0;
@@ -121,6 +123,7 @@ private:
     parallel_each(blocks.size(), 1, [&](std::size_t i) {
       const std::size_t begin = first + i * block_size;
       for (std::size_t e = begin; e < std::min(end, begin + block_size); ++e) {
+        if (!is_used[e - first]) continue;
         RefinedEdge& edge = mesh_.edges[e];
         const EdgeDecision decision = oracle_.decide(mesh_.points[edge.a], mesh_.points[edge.b]);
         edge.error = decision.error;
@@ -216,8 +219,26 @@ private:
         part.wedge[k] = wedge[from];
         part.edge[k] = edge_between(face, pattern, from, to, first_edge);
       }
-      block.active.push_back(part);
+      if (is_off_picture(part))
+        ++block.off_picture;
+      else
+        block.active.push_back(part);
     }
+  }
+
+  /// Its corners must be points of the mesh already.
+  bool is_off_picture(const RefinedFace& face) const {
+    return cull_ != nullptr && !cull_->may_be_seen(corner(face, 0), corner(face, 1), corner(face, 2));
+  }
+
+  /// Flags of the edges from `first` on that some face still waits for; what only dropped faces had needs no decision.
+  std::vector<std::uint8_t> used_edges(std::size_t first) const {
+    std::vector<std::uint8_t> is_used(mesh_.edges.size() - first, cull_ == nullptr);
+    if (cull_ == nullptr) return is_used;
+    for (const RefinedFace& face : active_)
+      for (const std::uint32_t e : face.edge)
+        if (e >= first) is_used[e - first] = 1;
+    return is_used;
   }
 
   std::uint32_t edge_between(const RefinedFace& face, const SplitPattern& pattern, int from, int to, std::uint32_t first_edge) const {
@@ -346,6 +367,7 @@ private:
     active_.insert(active_.end(), block.active.begin(), block.active.end());
     mesh_.faces.insert(mesh_.faces.end(), block.final.begin(), block.final.end());
     mesh_.clipped += block.clipped;
+    mesh_.off_picture += block.off_picture;
     mesh_.uncertified_faces += block.uncertified;
     mesh_.evaluations += block.evaluations;
   }
@@ -372,6 +394,7 @@ private:
 
   const Soup& soup_;
   const EdgeOracle& oracle_;
+  const PictureCull* cull_;
   RefinedMesh mesh_;
   std::vector<RefinedFace> active_;
   std::uint32_t first_wedge_ = 0;
@@ -383,8 +406,8 @@ private:
 
 } // namespace
 
-RefinedMesh refine_levels(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles) {
-  return Refiner(soup, oracle).run(max_triangles);
+RefinedMesh refine_levels(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles, const PictureCull* cull) {
+  return Refiner(soup, oracle, cull).run(max_triangles);
 }
 
 } // namespace domewarp

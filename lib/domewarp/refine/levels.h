@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "domewarp/refine/edge_oracle.h"
+#include "domewarp/refine/picture_cull.h"
 #include "domewarp/refine/soup.h"
 
 namespace domewarp {
@@ -35,6 +36,7 @@ struct RefinedMesh {
   std::vector<Wedge> wedges;     ///< those made here; their ids follow the soup's
   std::vector<RefinedFace> faces; ///< final and visible, in the order of the source
   std::size_t clipped = 0;
+  std::size_t off_picture = 0;   ///< pieces dropped before they were refined, as far outside the picture's rectangle
   std::size_t uncertified_faces = 0; ///< judged by samples
   std::size_t evaluations = 0;
   std::size_t levels = 0;
@@ -42,6 +44,7 @@ struct RefinedMesh {
 };
 
 /// Refines level by level until no edge asks for a split. Deterministic for any number of threads.
-RefinedMesh refine_levels(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles);
+/// @param cull drops what the picture does not show, before it is refined; null: nothing is dropped
+RefinedMesh refine_levels(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles, const PictureCull* cull = nullptr);
 
 } // namespace domewarp

@@ -9,6 +9,7 @@
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/weld.h"
 #include "domewarp/refine/emit.h"
+#include "domewarp/refine/tolerances.h"
 #include "domewarp/refine/warped_vertex.h"
 
 namespace domewarp {
@@ -80,18 +81,12 @@ struct Segment {
   std::uint32_t a = 0, b = 0;
 };
 
-bool is_beyond(const Vec2& a, const Vec2& b, const Vec2& half_extent) {
-  for (int axis = 0; axis < 2; ++axis)
-    if (std::min(a[axis], b[axis]) > half_extent[axis] || std::max(a[axis], b[axis]) < -half_extent[axis]) return true;
-  return false;
-}
-
 /// Writes the warped form of one primitive of lines or points.
 class LineEmitter {
 public:
   LineEmitter(const Primitive& source, const View& view, const Mat4& world, const EdgeOracle& oracle, const Raster& raster,
               const RefineOptions& options, RefineReport& report)
-      : source_(source), oracle_(oracle), options_(options), writer_(view, world),
+      : source_(source), oracle_(oracle), options_(options), written_(written_attributes(source, options)), writer_(view, world),
         half_extent_(Vec2(aspect(raster), 1) + picture_margin(options, raster)), report_(report), vertices_(source.positions.size()),
         vertex_of_(source.positions.size(), unused) {
     parallel_each(vertices_.size(), block_size,
@@ -99,8 +94,7 @@ public:
     report.map_evaluations += vertices_.size();
     out_.topology = source.topology;
     out_.material = source.material;
-    for (const Attribute& attribute : source.attributes)
-      if (attribute.name != source_position) out_.attributes.push_back({attribute.name, attribute.components, {}});
+    for (const Attribute* attribute : written_) out_.attributes.push_back({attribute->name, attribute->components, {}});
     if (options.source_attributes) out_.attributes.push_back({source_position, 3, {}});
   }
 
@@ -163,16 +157,15 @@ private:
     out_.positions.push_back(position);
     std::size_t written = 0;
     std::vector<double> values;
-    for (const Attribute& attribute : source_.attributes) {
-      if (attribute.name == source_position) continue;
-      values.resize(attribute.components);
-      for (int c = 0; c < attribute.components; ++c) {
-        const auto at = [&](std::uint32_t v) { return double(attribute.values[std::size_t(v) * attribute.components + c]); };
+    for (const Attribute* attribute : written_) {
+      values.resize(attribute->components);
+      for (int c = 0; c < attribute->components; ++c) {
+        const auto at = [&](std::uint32_t v) { return double(attribute->values[std::size_t(v) * attribute->components + c]); };
         values[c] = at(segment.a) * (1 - station.t) + at(segment.b) * station.t;
       }
       std::vector<float>& out = out_.attributes[written++].values;
-      out.resize(out.size() + attribute.components);
-      writer_.write(attribute, values.data(), out.data() + out.size() - attribute.components);
+      out.resize(out.size() + attribute->components);
+      writer_.write(*attribute, values.data(), out.data() + out.size() - attribute->components);
     }
     if (options_.source_attributes) {
       const Vec3f eye(station.point.eye);
@@ -184,6 +177,7 @@ private:
   const Primitive& source_;
   const EdgeOracle& oracle_;
   const RefineOptions& options_;
+  std::vector<const Attribute*> written_;
   AttributeWriter writer_;
   Vec2 half_extent_;
   RefineReport& report_;
@@ -223,6 +217,7 @@ void emit_lines(const Scene& scene, const View& view, const EdgeOracle& oracle, 
     LineEmitter emitter(primitive, view, scene.instances[i].world, oracle, raster, options, report);
     Primitive warped = primitive.topology == Topology::points ? emitter.points() : emitter.lines(errors);
     if (warped.indices.empty()) return;
+    count_attributes(primitive, written_attributes(primitive, options), report.skipped);
     report.vertices += warped.positions.size();
     out.meshes[i].primitives.push_back(std::move(warped));
   });

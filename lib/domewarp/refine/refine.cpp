@@ -13,17 +13,11 @@
 #include "domewarp/refine/levels.h"
 #include "domewarp/refine/lines.h"
 #include "domewarp/refine/soup.h"
+#include "domewarp/refine/tolerances.h"
 
 namespace domewarp {
 
 namespace {
-
-/// Edges are refined to this share of the tolerance, faces to the tolerance less the rounding to float32: the bound of a
-/// face cannot fall below that of its sides, and without the difference no vertex inside would ever be enough.
-constexpr double edge_share = 0.97;
-
-/// Image coordinates are quotients of two float32 numbers; r_max is at most a few image units.
-constexpr double file_rounding = 0x1p-22;
 
 class Stopwatch {
 public:
@@ -63,20 +57,20 @@ double extent(const Soup& soup) {
 /// Refines within the limit: where the tolerance needs more triangles, every edge gets the same larger one, the
 /// smallest (to a factor of 1.2) that fits. Such a mesh is marked as stopped. When none fits, because the clip alone
 /// needs more, refinement ends where the limit was reached.
-RefinedMesh refine_within(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles) {
-  RefinedMesh mesh = refine_levels(soup, oracle, max_triangles);
+RefinedMesh refine_within(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles, const PictureCull* cull) {
+  RefinedMesh mesh = refine_levels(soup, oracle, max_triangles, cull);
   if (!mesh.stopped) return mesh;
   constexpr double hopeless = 1e8;
   double high = 1;
   std::optional<RefinedMesh> best;
   while (!best && high < hopeless) {
     high *= 4;
-    if (RefinedMesh tried = refine_levels(soup, oracle.relaxed(high), max_triangles); !tried.stopped) best = std::move(tried);
+    if (RefinedMesh tried = refine_levels(soup, oracle.relaxed(high), max_triangles, cull); !tried.stopped) best = std::move(tried);
   }
   if (!best) return mesh;
   for (double low = high / 4; high > 1.2 * low;) {
     const double middle = std::sqrt(low * high);
-    RefinedMesh tried = refine_levels(soup, oracle.relaxed(middle), max_triangles);
+    RefinedMesh tried = refine_levels(soup, oracle.relaxed(middle), max_triangles, cull);
     (tried.stopped ? low : high) = middle;
     if (!tried.stopped) best = std::move(tried);
   }
@@ -148,15 +142,12 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   report.near = options.near > 0 ? options.near : std::max(1e-5 * std::max(extent(soup), lines.extent), 1e-30);
   report.soup_ms = watch.lap();
 
-  const double tolerance = options.tolerance_px * pixel_size(raster);
-  OracleOptions oracle_options{edge_share * tolerance, std::max(edge_share * tolerance, tolerance - file_rounding), options.depth_tolerance,
-                               options.projection, options.criterion, options.criterion_px * pixel_size(raster)};
-  if (options.subdivision == Subdivision::none)
-    oracle_options.tolerance = oracle_options.face_tolerance = oracle_options.depth_tolerance = 1e30;
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
-    const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options);
-    const RefinedMesh refined = refine_within(soup, oracle, options.max_triangles);
+    const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options(options, raster));
+    const PictureCull off_picture(branch, raster, picture_margin(options, raster));
+    const RefinedMesh refined = refine_within(soup, oracle, options.max_triangles, options.skip.off_picture ? &off_picture : nullptr);
+    report.skipped.off_picture += refined.off_picture;
     report.levels = std::max(report.levels, refined.levels);
     report.map_evaluations += refined.evaluations;
     report.triangles_clipped += refined.clipped;
@@ -164,7 +155,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
     report.levels_ms += watch.lap();
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
-    audit_edges(soup, refined, oracle, raster, report);
+    audit_edges(soup, refined, oracle, raster, options, report);
     emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }

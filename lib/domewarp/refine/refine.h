@@ -45,6 +45,11 @@ struct RefineOptions {
   bool source_attributes = false;    ///< adds _SOURCE_POSITION (eye space)
   double weld = 0;                   ///< positions this near are joined, scene units; 0: only those equal to the bit
   SkipOptions skip;
+  /// Whether anybody reads an attribute of a primitive with this material (-1: the default one); empty: all are read.
+  std::function<bool(int material, const std::string& attribute)> reads;
+  /// Whether everything at `nearest` or farther (scene units) within a box of the image is hidden, as far as the picture
+  /// can tell; empty: nothing is. Such faces are not written, and the edges of their neighbours are left open.
+  std::function<bool(const Vec2& low, const Vec2& high, double nearest)> is_hidden;
   Subdivision subdivision = Subdivision::adaptive;
   IsotropicOptions isotropic;        ///< for Subdivision::isotropic
   EdgeCriterion criterion;           ///< splits more edges than the tolerance needs (not with Subdivision::isotropic)

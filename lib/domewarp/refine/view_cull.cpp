@@ -36,27 +36,32 @@ ViewCull::ViewCull(const Surface& surface, const Raster& raster, double margin)
 bool ViewCull::may_be_seen(const Ball& ball) const {
   const double distance = glm::length(ball.centre);
   if (!(distance > ball.radius)) return true;
-  const double half = std::asin(ball.radius / distance) + rounding;
-  const double theta = std::atan2(std::hypot(ball.centre.x, ball.centre.y), -ball.centre.z);
-  const double low = std::max(theta - half, 0.0), high = std::min(theta + half, pi);
-  const bool holds_axis = theta <= half || theta + half >= pi;
-  const double half_azimuth = holds_axis ? pi : std::asin(std::min(1.0, std::sin(half) / std::sin(theta))) + rounding;
-  const double azimuth = std::atan2(ball.centre.y, ball.centre.x);
+  const DirectionSector sector = sector_of({ball.centre / distance, std::asin(ball.radius / distance)});
+  const double low = sector.theta_low, high = sector.theta_high;
   for (std::size_t b = 0; b < surface_.branches().size(); ++b) {
     const Branch& branch = surface_.branches()[b];
     if (low > branch.theta_high + rounding || high < branch.theta_low - rounding) continue;
     const auto [near, far] = std::minmax({surface_.radius(b, std::sin(low), std::cos(low)), surface_.radius(b, std::sin(high), std::cos(high))});
-    if (meets_rectangle(near * (1 - rounding), far * (1 + rounding), azimuth, half_azimuth)) return true;
+    if (meets_rectangle(half_extent_, near * (1 - rounding), far * (1 + rounding), sector)) return true;
   }
   return false;
 }
 
-bool ViewCull::meets_rectangle(double radius_low, double radius_high, double azimuth, double half_azimuth) const {
+DirectionSector sector_of(const DirectionCone& cone) {
+  const double half = cone.half_angle + rounding;
+  const double theta = std::atan2(std::hypot(cone.axis.x, cone.axis.y), -cone.axis.z);
+  DirectionSector sector{std::max(theta - half, 0.0), std::min(theta + half, pi), std::atan2(cone.axis.y, cone.axis.x), pi};
+  const bool holds_axis = theta <= half || theta + half >= pi;
+  if (!holds_axis) sector.half_azimuth = std::asin(std::min(1.0, std::sin(half) / std::sin(theta))) + rounding;
+  return sector;
+}
+
+bool meets_rectangle(const Vec2& half_extent, double radius_low, double radius_high, const DirectionSector& sector) {
   for (int side = 0; side < 4; ++side) {
     // Farthest of the sector's directions from this side's normal.
-    const double apart = std::min(pi, std::abs(std::remainder(azimuth - side * pi / 2, 2 * pi)) + half_azimuth);
+    const double apart = std::min(pi, std::abs(std::remainder(sector.azimuth - side * pi / 2, 2 * pi)) + sector.half_azimuth);
     const double least = std::cos(apart) * (apart < pi / 2 ? radius_low : radius_high);
-    if (least > half_extent_[side % 2]) return false;
+    if (least > half_extent[side % 2]) return false;
   }
   return true;
 }

@@ -14,6 +14,23 @@ struct Ball {
   double radius = 0;
 };
 
+/// All directions within an angle of an axis.
+struct DirectionCone {
+  Vec3 axis = Vec3(0, 0, -1); ///< unit
+  double half_angle = 0;      ///< radians, below pi / 2
+};
+
+/// View angles and azimuths that hold those of a cone, with room for rounding.
+struct DirectionSector {
+  double theta_low = 0, theta_high = 0;
+  double azimuth = 0, half_azimuth = 0;
+};
+DirectionSector sector_of(const DirectionCone& cone);
+
+/// Whether the part of a ring between two image radii, seen in the sector's azimuths, may meet the rectangle about the
+/// image's centre.
+bool meets_rectangle(const Vec2& half_extent, double radius_low, double radius_high, const DirectionSector& sector);
+
 /// Ball around the box (space of the mesh) of a primitive drawn by an instance.
 /// @param box of the primitive's positions
 Ball bounding_ball(const Box& box, const Mat4& world, const View& view);
@@ -27,8 +44,6 @@ public:
   bool may_be_seen(const Ball& ball) const;
 
 private:
-  bool meets_rectangle(double radius_low, double radius_high, double azimuth, double half_azimuth) const;
-
   Surface surface_;
   Vec2 half_extent_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/refine/warped_vertex.h"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -24,6 +26,28 @@ Mat3 cofactors(const Mat3& m) {
 Vec3f warped_position(const MappedPoint& point, Projection projection) {
   if (projection == Projection::orthographic) return Vec3f(Vec3(point.mapped.image, -glm::length(point.eye)));
   return Vec3f(Vec3(point.mapped.image * point.mapped.weight, -point.mapped.weight));
+}
+
+std::vector<const Attribute*> written_attributes(const Primitive& primitive, const RefineOptions& options) {
+  std::vector<const Attribute*> written;
+  for (const Attribute& attribute : primitive.attributes)
+    if (attribute.name != source_position &&
+        (!options.skip.unused_attributes || !options.reads || options.reads(primitive.material, attribute.name)))
+      written.push_back(&attribute);
+  return written;
+}
+
+void count_attributes(const Primitive& source, const std::vector<const Attribute*>& written, SkipReport& skipped) {
+  const auto attributes = static_cast<std::size_t>(
+      std::count_if(source.attributes.begin(), source.attributes.end(), [](const Attribute& a) { return a.name != source_position; }));
+  skipped.attributes += attributes;
+  skipped.unused_attributes += attributes - written.size();
+}
+
+bool is_beyond(const Vec2& a, const Vec2& b, const Vec2& half_extent) {
+  for (int axis = 0; axis < 2; ++axis)
+    if (std::min(a[axis], b[axis]) > half_extent[axis] || std::max(a[axis], b[axis]) < -half_extent[axis]) return true;
+  return false;
 }
 
 AttributeWriter::AttributeWriter(const View& view, const Mat4& world)

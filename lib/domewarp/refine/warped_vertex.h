@@ -2,6 +2,7 @@
 #pragma once
 
 #include "domewarp/refine/edge_oracle.h"
+#include "domewarp/refine/refine.h"
 #include "domewarp/scene/scene.h"
 #include "domewarp/scene/view.h"
 
@@ -11,6 +12,15 @@ inline constexpr const char* source_position = "_SOURCE_POSITION";
 
 /// The position as it is written: w (x', y', -1) for perspective output, (x', y', -depth) for orthographic.
 Vec3f warped_position(const MappedPoint& point, Projection projection);
+
+/// The attributes of a primitive that are carried over: those that somebody reads, unless all are asked for.
+std::vector<const Attribute*> written_attributes(const Primitive& primitive, const RefineOptions& options);
+
+/// Counts what a written primitive keeps and leaves out.
+void count_attributes(const Primitive& source, const std::vector<const Attribute*>& written, SkipReport& skipped);
+
+/// Whether two image points lie beyond one side of the rectangle about the image's centre, and so all between them.
+bool is_beyond(const Vec2& a, const Vec2& b, const Vec2& half_extent);
 
 /// Turns directions of a mesh into eye space; other attributes pass as they are.
 class AttributeWriter {

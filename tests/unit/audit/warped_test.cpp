@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of warped files: a sound file passes, and every kind of damage done to it on purpose is seen.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -166,6 +167,22 @@ TEST(WarpedAudit, MeasuresAShiftedPicture) {
   Warped warped;
   for (Vec3f& p : warped.primitive().positions) p.x += -p.z * 4 * static_cast<float>(pixel_size(raster));
   EXPECT_NEAR(warped.audit().coverage->error_px_max, 4, 0.5);
+}
+
+TEST(WarpedAudit, TheHausdorffDistanceIsWithinTheToleranceAndSeesAHole) {
+  RefineOptions options;
+  options.tolerance_px = 16;
+  options.depth_tolerance = 0.016; // 4 px in the third coordinate
+  Warped warped(options);
+  InspectOptions ask{&warped.picture, &warped.source, 100};
+  ask.hausdorff_px = 16;
+  const HausdorffReport sound = *inspect(warped.scene, ask).hausdorff;
+  EXPECT_GT(sound.exact_triangles, 1000u);
+  EXPECT_LE(sound.distance_px, std::hypot(16, 4) + sound.error_px);
+  std::vector<std::uint32_t>& indices = warped.primitive().indices;
+  const auto at = indices.begin() + static_cast<std::ptrdiff_t>(middle_triangle(warped.primitive()));
+  indices.erase(at, std::min(at + 180, indices.end())); // 60 neighbours
+  EXPECT_GT(inspect(warped.scene, ask).hausdorff->distance_px, 2 * sound.distance_px);
 }
 
 TEST(WarpedAudit, WithoutSourceAttributesItMapsBack) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -67,6 +70,114 @@ TEST(ErrorBound, CoversTheSampledErrorOfRandomEdges) {
     EXPECT_GT(tested, 1000) << name(c);
     EXPECT_EQ(violations, 0) << name(c);
   }
+}
+
+/// Triangles that are hard on a bound, about `at` and of about `size` times its distance; kind counts upwards.
+std::array<Vec3, 3> adversarial_face(std::mt19937& random, int kind, double size) {
+  std::normal_distribution<double> normal;
+  const auto any = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const Vec3 at = any();
+  const double length = size * glm::length(at);
+  const Vec3 along = glm::normalize(any()), across = glm::normalize(any());
+  switch (kind % 6) {
+    case 0: return {at, at + length * along, at + length * across};
+    case 1: return {at, at + length * along, at + length * (0.5 * along + 1e-5 * across)};                    // sliver
+    case 2: return {at, at + length * along, at + length * (0.3 * glm::normalize(at) + 0.4 * along)};         // seen nearly edge-on
+    case 3: return {Vec3(-length, 0, -1), Vec3(length, 0, -1), Vec3(0, 0.1 * length * (1 + normal(random)), -1)}; // symmetric about the axis
+    case 4: return {at, at * (1 + 3 * size), at * (1 + size) + length * across};                              // along the ray of sight
+    default: {                                                                                                // around the axis
+      const double z = at.z > 0 ? 1 : -1;
+      return {Vec3(length, 0, z), Vec3(-0.5 * length, 0.9 * length, z), Vec3(-0.4 * length, -0.8 * length, z)};
+    }
+  }
+}
+
+/// A face of which everything is settled, so that the refinement would keep it unless its bound says no.
+struct SettledFace {
+  std::array<MappedPoint, 3> corner;
+  std::array<SideBound, 3> side;
+};
+
+std::optional<SettledFace> settle(const EdgeOracle& oracle, const std::array<Vec3, 3>& eye) {
+  SettledFace face;
+  for (int k = 0; k < 3; ++k) {
+    face.corner[k] = oracle.locate(eye[k]);
+    for (const std::int8_t side : face.corner[k].sides)
+      if (side < 0) return std::nullopt;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const MappedPoint &a = face.corner[k], &b = face.corner[(k + 1) % 3];
+    const bool in_order = precedes(a.eye, b.eye);
+    const EdgeDecision decision = oracle.decide(in_order ? a : b, in_order ? b : a);
+    if (decision.split || !decision.certified) return std::nullopt;
+    face.side[k] = {decision.middle, decision.arch};
+  }
+  return face;
+}
+
+double sampled_face_error(const EdgeOracle& oracle, const SettledFace& face) {
+  constexpr int parts = 12;
+  double worst = 0;
+  for (int i = 0; i <= parts; ++i)
+    for (int j = 0; i + j <= parts; ++j)
+      worst = std::max(worst, oracle.interior_error(face.corner[0], face.corner[1], face.corner[2], Vec3(i, j, parts - i - j) / double(parts)));
+  return worst;
+}
+
+struct FaceTrial {
+  int tested = 0, violations = 0;
+  double worst = 0; ///< true error over tolerance
+};
+
+/// Shrinks every triangle until it is just accepted, where a bound that is too small shows.
+FaceTrial try_faces(const EdgeOracle& oracle, int count, bool ask_face) {
+  std::mt19937 random(20012);
+  FaceTrial trial;
+  for (int i = 0; i < count; ++i) {
+    const std::mt19937 same = random;
+    for (double size = 1.2; size > 1e-5; size *= 0.7) {
+      random = same;
+      const std::array<Vec3, 3> eye = adversarial_face(random, i, size);
+      const std::optional<SettledFace> face = settle(oracle, eye);
+      if (!face) continue;
+      std::size_t evaluations = 0;
+      const auto& [a, b, c] = face->corner;
+      if (ask_face && !oracle.is_good({&a, &b, &c}, face->side, 2, evaluations)) continue;
+      // A plane that the rim or the axis beyond it pierces is cut elsewhere (clipping), so only faces all inside count.
+      bool inside = true;
+      for (int s = 0; s < 66; ++s) {
+        const double u = (s % 11) / 10.0, v = (1 - u) * (s / 11) / 5.0;
+        for (const std::int8_t side : oracle.locate(eye[0] * u + eye[1] * v + eye[2] * (1 - u - v)).sides) inside = inside && side >= 0;
+      }
+      if (!inside) continue;
+      const double error = sampled_face_error(oracle, *face) / oracle.options().face_tolerance;
+      ++trial.tested;
+      trial.violations += error > 1 + 1e-6;
+      trial.worst = std::max(trial.worst, error);
+      break;
+    }
+  }
+  return trial;
+}
+
+TEST(FaceBound, CoversTheSampledErrorOfAdversarialFaces) {
+  for (const Case& c : cases()) {
+    const Surface surface(c.surface, std::sqrt(2.0));
+    const ImageMap map = make_image_map(surface, Method::automatic);
+    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-3, 1.03e-3, 1, c.projection});
+    const FaceTrial trial = try_faces(oracle, trials(10'000), true);
+    EXPECT_GT(trial.tested, trials(10'000) / 4) << name(c);
+    EXPECT_EQ(trial.violations, 0) << name(c) << ": worst is " << trial.worst << " of the tolerance";
+    EXPECT_GT(trial.worst, 0.5) << name(c) << ": these faces try nothing";
+    std::printf("%s: %d faces, worst %.3f of the tolerance\n", name(c).c_str(), trial.tested, trial.worst);
+  }
+}
+
+TEST(FaceBound, FacesWhoseSidesAloneAreGoodDoViolateTheTolerance) {
+  const Surface surface(curve("1-r^2"), std::sqrt(2.0));
+  const ImageMap map = make_image_map(surface, Method::automatic);
+  const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-3, 1e-3, 1, Projection::orthographic});
+  EXPECT_GT(try_faces(oracle, 10'000, false).violations, 0);
 }
 
 TEST(RadialRanges, ContainWhatTheyBound) {

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include <glm/geometric.hpp>
+
+#include "domewarp/core/parallel.h"
+#include "domewarp/refine/tolerances.h"
+#include "domewarp/refine/warped_vertex.h"
+#include "timing.h"
+
+namespace domewarp::bench {
+
+namespace {
+
+constexpr double rounding = 1e-10; ///< image units: what the two maps differ by
+
+Vec2 drawn(const Vec3& position, Projection projection) {
+  return projection == Projection::perspective ? Vec2(position) / -position.z : Vec2(position);
+}
+
+/// The exact map ends at the rim; a chord of a rim beyond 90 degrees bulges out of it.
+bool is_shown(const BranchMap& exact, const Vec3& eye) {
+  const Vec2 inside = exact.inside(eye);
+  return inside.x >= 0 && inside.y >= 0;
+}
+
+/// Of what the file draws: corners are rounded to float32.
+double written_error(const RefinedMesh& mesh, const RefinedFace& face, const BranchMap& exact, Projection projection, const Vec3& weights) {
+  Vec3 position(0), eye(0);
+  for (int k = 0; k < 3; ++k) {
+    position += weights[k] * Vec3(warped_position(mesh.points[face.point[k]], projection));
+    eye += weights[k] * mesh.points[face.point[k]].eye;
+  }
+  return is_shown(exact, eye) ? glm::length(drawn(position, projection) - exact.image(eye)) : 0;
+}
+
+double edge_error(const MappedPoint& a, const MappedPoint& b, const BranchMap& exact, double t) {
+  const Vec3 from(a.mapped.image * a.mapped.weight, a.mapped.weight), to(b.mapped.image * b.mapped.weight, b.mapped.weight);
+  const Vec3 q = from * (1 - t) + to * t, eye = point_at(a.eye, b.eye, t);
+  return is_shown(exact, eye) ? glm::length(Vec2(q) / q.z - exact.image(eye)) : 0;
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Largest error of every edge that a face uses, -1 of the others.
+std::vector<double> edge_errors(const RefinedMesh& mesh, const BranchMap& exact) {
+  std::vector<double> errors(mesh.edges.size(), -1);
+  for (const RefinedFace& face : mesh.faces)
+    for (const std::uint32_t e : face.edge) errors[e] = 0;
+  parallel_each(errors.size(), 256, [&](std::size_t e) {
+    if (errors[e] < 0) return;
+    const MappedPoint &a = mesh.points[mesh.edges[e].a], &b = mesh.points[mesh.edges[e].b];
+    for (int s = 1; s < 64; ++s) errors[e] = std::max(errors[e], edge_error(a, b, exact, s / 64.0));
+  });
+  return errors;
+}
+
+/// Largest error of every face at the inner points of a grid.
+std::vector<double> face_errors(const RefinedMesh& mesh, const BranchMap& exact, Projection projection) {
+  constexpr int parts = 13;
+  std::vector<double> errors(mesh.faces.size(), 0);
+  parallel_each(errors.size(), 256, [&](std::size_t f) {
+    for (int i = 1; i < parts; ++i)
+      for (int j = 1; i + j < parts; ++j)
+        errors[f] = std::max(errors[f], written_error(mesh, mesh.faces[f], exact, projection, Vec3(i, j, parts - i - j) / double(parts)));
+  });
+  return errors;
+}
+
+} // namespace
+
+Display make_display(const std::string& name, const SurfaceOptions& options, const Raster& raster) {
+  Surface surface(options, screen_radius(raster));
+  ImageMap map = make_image_map(surface, Method::automatic), exact = make_image_map(surface, Method::direct);
+  return {name, std::move(surface), std::move(map), std::move(exact)};
+}
+
+std::vector<std::pair<std::string, SurfaceOptions>> surfaces() {
+  SurfaceOptions lens, parabola, hyperbola, cone;
+  lens.lens = Lens::equidistant;
+  lens.rmax = 1;
+  parabola.curve = "1-r^2";
+  hyperbola.curve = "3-sqrt(4+6*r^2)";
+  cone.curve = "1-r";
+  parabola.rmax = hyperbola.rmax = cone.rmax = 1.3;
+  return {{"equidistant 180", lens}, {"1-r^2", parabola}, {"3-sqrt(4+6*r^2)", hyperbola}, {"1-r", cone}};
+}
+
+Refined refine_whole(Soup soup, const Display& display, const Raster& raster, const RefineOptions& options) {
+  double extent = 0;
+  for (const Vec3& point : soup.points) extent = std::max(extent, glm::length(point));
+  const BranchMap& branch = display.map.branches.front();
+  const EdgeOracle oracle(display.surface, 0, branch, make_visible_region(branch.branch(), 1e-5 * extent), oracle_options(options, raster));
+  Refined refined{std::move(soup), {}, 0};
+  refined.seconds = seconds([&] { refined.mesh = refine_levels(refined.soup, oracle, options.max_triangles); });
+  return refined;
+}
+
+Judged judge(const Refined& refined, const Display& display, const Raster& raster, const RefineOptions& options) {
+  const RefinedMesh& mesh = refined.mesh;
+  const BranchMap& exact = display.exact.branches.front();
+  const double tolerance = options.tolerance_px * pixel_size(raster), px = 1 / pixel_size(raster);
+  const std::vector<double> edges = edge_errors(mesh, exact), faces = face_errors(mesh, exact, options.projection);
+  Judged judged;
+  std::vector<double> ratios, tight;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (edges[e] < 0) continue;
+    const double certified = mesh.edges[e].error;
+    ++judged.edges;
+    if (edges[e] > certified + rounding) {
+      const MappedPoint &a = mesh.points[mesh.edges[e].a], &b = mesh.points[mesh.edges[e].b];
+      fprintf(stderr, "VTX a %.6g b %.6g px; rim a %.6g b %.6g px\n", glm::length(a.mapped.image-exact.image(a.eye))*px, glm::length(b.mapped.image-exact.image(b.eye))*px, (display.surface.r_max()-glm::length(exact.image(a.eye)))*px, (display.surface.r_max()-glm::length(exact.image(b.eye)))*px);
+      fprintf(stderr, "EDGE true %.6g cert %.6g px cert? %d a (%.9g %.9g %.9g) sides %d%d%d b (%.9g %.9g %.9g) sides %d%d%d len %.3g wa %.9g wb %.9g\n", edges[e]*px, certified*px, mesh.edges[e].certified, a.eye.x,a.eye.y,a.eye.z,a.sides[0],a.sides[1],a.sides[2],b.eye.x,b.eye.y,b.eye.z,b.sides[0],b.sides[1],b.sides[2], glm::length(b.eye-a.eye)/a.rho, a.mapped.weight, b.mapped.weight);
+    }
+    judged.edge_violations += edges[e] > certified + rounding || certified > tolerance;
+    judged.certified = std::max(judged.certified, certified * px);
+    judged.edge_error = std::max(judged.edge_error, edges[e] * px);
+    if (edges[e] < rounding) continue; // seen end-on: nothing to compare
+    ratios.push_back(certified / edges[e]);
+    if (certified >= 0.5 * tolerance) tight.push_back(ratios.back());
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f) if (faces[f] > tolerance + rounding) {
+    fprintf(stderr, "FACE true %.6g insertions %d:", faces[f]*px, mesh.faces[f].insertions);
+    for (int k = 0; k < 3; ++k) { const MappedPoint& a = mesh.points[mesh.faces[f].point[k]]; const RefinedEdge& ed = mesh.edges[mesh.faces[f].edge[k]]; fprintf(stderr, " (%.6g %.6g %.6g) sides %d%d%d edge cert %.4g", a.eye.x,a.eye.y,a.eye.z,a.sides[0],a.sides[1],a.sides[2], ed.error*px); }
+    fprintf(stderr, "\n");
+  }
+  for (const double error : faces) {
+    judged.face_violations += error > tolerance + rounding;
+    judged.face_error = std::max(judged.face_error, error * px);
+  }
+  judged.median_ratio = median(ratios);
+  judged.tight_ratio = median(tight);
+  return judged;
+}
+
+double sampled_error(const RefinedMesh& mesh, const Display& display, const Raster& raster, Projection projection,
+                     const std::function<bool(const RefinedFace&)>& counts) {
+  const BranchMap& branch = display.map.branches.front();
+  constexpr int parts = 4;
+  double worst = 0;
+  std::mutex guard;
+  parallel_ranges(mesh.faces.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    double here = 0;
+    for (std::size_t f = begin; f < end; ++f) {
+      const RefinedFace& face = mesh.faces[f];
+      const auto is_visible = [&](std::uint32_t point) { return mesh.points[point].sides[0] >= 0; };
+      if (!counts(face) || !std::all_of(face.point.begin(), face.point.end(), is_visible)) continue;
+      for (int i = 0; i < parts; ++i)
+        for (int j = i == 0 ? 1 : 0; i + j <= parts && j < parts; ++j)
+          here = std::max(here, written_error(mesh, face, branch, projection, Vec3(i, j, parts - i - j) / double(parts)));
+    }
+    const std::lock_guard lock(guard);
+    worst = std::max(worst, here);
+  });
+  return worst / pixel_size(raster);
+}
+
+} // namespace domewarp::bench

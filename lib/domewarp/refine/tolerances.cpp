@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "domewarp/refine/tolerances.h"
+
+#include <algorithm>
+
+namespace domewarp {
+
+namespace {
+
+/// Edges are refined to this share of the tolerance, faces to the tolerance less the rounding to float32: the bound of a
+/// face cannot fall below that of its sides, and without the difference no vertex inside would ever be enough.
+constexpr double edge_share = 0.97;
+
+/// Image coordinates are quotients of two float32 numbers; r_max is at most a few image units.
+constexpr double file_rounding = 0x1p-22;
+
+} // namespace
+
+OracleOptions oracle_options(const RefineOptions& options, const Raster& raster) {
+  if (options.subdivision == Subdivision::none) return {1e30, 1e30, 1e30, options.projection, options.criterion, options.criterion_px * pixel_size(raster)};
+  const double tolerance = options.tolerance_px * pixel_size(raster), edge = edge_share * tolerance;
+  return {edge, std::max(edge, tolerance - file_rounding), options.depth_tolerance, options.projection, options.criterion,
+          options.criterion_px * pixel_size(raster)};
+}
+
+double picture_margin(const RefineOptions& options, const Raster& raster) { return (options.tolerance_px + 1) * pixel_size(raster); }
+
+} // namespace domewarp
