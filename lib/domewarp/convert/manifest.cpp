@@ -209,7 +209,7 @@ private:
   }
 
   std::string path() const {
-    const std::string scene = "scenes[" + std::to_string(manifest_.scenes.empty() ? 0 : manifest_.scenes.size() - 1) + "]";
+    std::string scene = "scenes[" + std::to_string(manifest_.scenes.empty() ? 0 : manifest_.scenes.size() - 1) + "]";
     switch (outermost()) {
     case State::root: return key_;
     case State::defaults: return "defaults." + key_;

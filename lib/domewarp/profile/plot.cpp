@@ -59,7 +59,7 @@ Path flatten(const std::function<Vec2(double)>& point, double a, double b, doubl
 double flatness(const SvgPlot& plot) { return 0.25 * plot.unit(); }
 
 Path visible_path(const Surface& surface, double accuracy) {
-  return flatten([&](double radius) { return *surface.meridian(radius); }, 0, surface.r_max(), accuracy);
+  return flatten([&](double radius) { return *surface.meridian(std::min(radius, surface.r_max())); }, 0, surface.r_max(), accuracy);
 }
 
 // The surface as given, also where nothing of it is shown; empty where it cannot be followed.
@@ -69,7 +69,7 @@ Path whole_path(const Surface& surface, double reach, double accuracy) try {
   options.projector.reset();
   options.branches = BranchChoice::all;
   const Surface whole(options, reach);
-  return flatten([&](double radius) { return *whole.meridian(radius); }, 0, whole.r_max(), accuracy);
+  return flatten([&](double radius) { return *whole.meridian(std::min(radius, whole.r_max())); }, 0, whole.r_max(), accuracy);
 } catch (const Error&) {
   return {};
 }
@@ -80,7 +80,7 @@ PlotWindow choose_window(const Surface& surface) {
   double width = std::max({surface.r_max(), surface.rim().point.x});
   double low = 0, high = 0;
   for (int i = 0; i <= 64; ++i) { // for the frame only
-    const Vec2 p = *surface.meridian(surface.r_max() * i / 64);
+    const Vec2 p = *surface.meridian(std::min(surface.r_max() * i / 64, surface.r_max()));
     if (!std::isfinite(p.x + p.y)) continue;
     width = std::max(width, p.x);
     low = std::min(low, p.y);
@@ -167,7 +167,7 @@ void draw_rays(SvgPlot& plot, const Surface& surface) {
 void draw_feed(SvgPlot& plot, const Surface& surface) {
   constexpr int count = 6;
   for (int i = 1; i <= count; ++i) {
-    const double radius = surface.r_max() * i / count;
+    const double radius = std::min(surface.r_max() * i / count, surface.r_max()); // may round up
     const Vec2 point = *surface.meridian(radius), start(radius, 0);
     for (const double side : {-1.0, 1.0}) {
       Path path{start, point};

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include <locale.h>
+#include <locale.h> // NOLINT(modernize-deprecated-headers): locale_t of POSIX
 
 // glibc's functions of _Float128, which Clang's C++ does not see in <math.h>.
 extern "C" {

@@ -67,7 +67,7 @@ private:
       return;
     }
     result_.stopped = result_.stopped || decision.split.has_value();
-    if (is_visible(from.point) && is_visible(to.point)) result_.pieces.push_back({from, to, std::move(decision)});
+    if (is_visible(from.point) && is_visible(to.point)) result_.pieces.push_back({from, to, decision});
   }
 
   const EdgeOracle& oracle_;

@@ -23,8 +23,9 @@ struct Points {
   std::size_t stride = 1;
   operator ConstPoints() const { return {x, y, z, stride}; }
 };
-inline ConstPoints interleaved(const float* xyz) { return {xyz, xyz + 1, xyz + 2, 3}; }
-inline Points interleaved(float* xyz) { return {xyz, xyz + 1, xyz + 2, 3}; }
+/// x y z x y z ...; null for no points at all.
+inline ConstPoints interleaved(const float* xyz) { return xyz ? ConstPoints{xyz, xyz + 1, xyz + 2, 3} : ConstPoints{}; }
+inline Points interleaved(float* xyz) { return xyz ? Points{xyz, xyz + 1, xyz + 2, 3} : Points{}; }
 
 enum class BatchOutput {
   image,       ///< x', y', depth = |p|

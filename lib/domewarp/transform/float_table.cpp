@@ -127,7 +127,7 @@ private:
 
   // Taken along the image radius, where it costs no root.
   Sample sample(int piece, double radius) const {
-    const Vec2 way = *surface_.direction(radius);
+    const Vec2 way = *surface_.direction(std::min(radius, surface_.r_max())); // the end of a piece may round up
     const double u = index_.u(way.x, way.y);
     return {u * index_.scale - 0.5 - piece, is_behind(piece) ? 1 / radius : way.x / radius, radius, u};
   }
@@ -223,7 +223,7 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
       if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
       FloatFit fit = fitter.finish();
       if (fit.weight_error > usable_weight) continue;
-      best = std::move(fit);
+      best = fit;
       if (best->predicted_error <= aim * max_error) return best;
     }
   return best;

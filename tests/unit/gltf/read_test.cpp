@@ -260,7 +260,7 @@ TEST(Read, KeepsMaterialsAsTextAndAsNumbers) {
                           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
                            {"KHR_materials_unlit", json::object()},
                            {"VENDOR_x", {{"y", {1, 2}}}}}}};
-  file.root["materials"] = {material};
+  file.root["materials"] = json::array({material}); // clang takes {material} for a copy
   file.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_unlit", "VENDOR_x"};
   const Scene scene = file.read();
   const Material& read = scene.materials.at(0);
