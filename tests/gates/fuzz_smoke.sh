@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the libFuzzer targets (preset fuzz) and runs each from an empty corpus; a finding fails.
-# Usage: smoke.sh REPOSITORY [SECONDS [RUNS]]: at most so long and so many runs for each target
+# Runs each libFuzzer target (preset fuzz, built if need be) from an empty corpus; a finding fails.
+# Usage: fuzz_smoke.sh REPOSITORY [SECONDS [RUNS]]: at most so long and so many runs for each target
 set -euo pipefail
 root=$1 seconds=${2:-20} runs=${3:-100000}
 cd "$root"
