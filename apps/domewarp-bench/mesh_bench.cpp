@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
-#include <cstdlib>
 
 #include "bench_scenes.h"
 #include "benches.h"
@@ -78,7 +77,6 @@ Plot draw_rivals(const Table& table) {
 
 Result run_mesh_bench(const Options& options) {
   Result result;
-  if (getenv("ONLY")) { count_box(options, result); return result; }
   measure_growth(options, result); // starts processes, so before any thread runs
   count_box(options, result);
   result.tables.push_back(compare_with_rivals(options));

@@ -116,22 +116,12 @@ Judged judge(const Refined& refined, const Display& display, const Raster& raste
     if (edges[e] < 0) continue;
     const double certified = mesh.edges[e].error;
     ++judged.edges;
-    if (edges[e] > certified + rounding) {
-      const MappedPoint &a = mesh.points[mesh.edges[e].a], &b = mesh.points[mesh.edges[e].b];
-      fprintf(stderr, "VTX a %.6g b %.6g px; rim a %.6g b %.6g px\n", glm::length(a.mapped.image-exact.image(a.eye))*px, glm::length(b.mapped.image-exact.image(b.eye))*px, (display.surface.r_max()-glm::length(exact.image(a.eye)))*px, (display.surface.r_max()-glm::length(exact.image(b.eye)))*px);
-      fprintf(stderr, "EDGE true %.6g cert %.6g px cert? %d a (%.9g %.9g %.9g) sides %d%d%d b (%.9g %.9g %.9g) sides %d%d%d len %.3g wa %.9g wb %.9g\n", edges[e]*px, certified*px, mesh.edges[e].certified, a.eye.x,a.eye.y,a.eye.z,a.sides[0],a.sides[1],a.sides[2],b.eye.x,b.eye.y,b.eye.z,b.sides[0],b.sides[1],b.sides[2], glm::length(b.eye-a.eye)/a.rho, a.mapped.weight, b.mapped.weight);
-    }
     judged.edge_violations += edges[e] > certified + rounding || certified > tolerance;
     judged.certified = std::max(judged.certified, certified * px);
     judged.edge_error = std::max(judged.edge_error, edges[e] * px);
     if (edges[e] < rounding) continue; // seen end-on: nothing to compare
     ratios.push_back(certified / edges[e]);
     if (certified >= 0.5 * tolerance) tight.push_back(ratios.back());
-  }
-  for (std::size_t f = 0; f < faces.size(); ++f) if (faces[f] > tolerance + rounding) {
-    fprintf(stderr, "FACE true %.6g insertions %d:", faces[f]*px, mesh.faces[f].insertions);
-    for (int k = 0; k < 3; ++k) { const MappedPoint& a = mesh.points[mesh.faces[f].point[k]]; const RefinedEdge& ed = mesh.edges[mesh.faces[f].edge[k]]; fprintf(stderr, " (%.6g %.6g %.6g) sides %d%d%d edge cert %.4g", a.eye.x,a.eye.y,a.eye.z,a.sides[0],a.sides[1],a.sides[2], ed.error*px); }
-    fprintf(stderr, "\n");
   }
   for (const double error : faces) {
     judged.face_violations += error > tolerance + rounding;

@@ -23,6 +23,7 @@ using Faces = CGAL::Surface_mesh<Kernel::Point_3>;
 
 constexpr double depth_scale = 250;      ///< px
 constexpr double boundary_margin = 1e-6;
+constexpr double hidden_angle = 0.05;    ///< radians: a smaller piece of which no corner is shown is left out
 constexpr int deepest = 14;              ///< halvings of a source triangle's sides
 constexpr std::size_t most_pieces = 5'000'000;
 
@@ -80,7 +81,7 @@ public:
       const double longest = std::max({glm::length(at[1] - at[0]), glm::length(at[2] - at[1]), glm::length(at[0] - at[2])});
       // A side that bends one way and back has its middle on its chord: long ones are cut in any case.
       if (level == deepest || (sag <= flatness_ && longest < 256)) return keep(at);
-    } else if (level == deepest || is_small(eye)) {
+    } else if (level == deepest || is_within(eye, shown[0] || shown[1] || shown[2] ? 2 * pixel_size(picture_.raster) : hidden_angle)) {
       return;
     }
     cut(branch, {eye[0], middle[0], middle[2]}, level + 1);
@@ -92,9 +93,8 @@ public:
   const Faces& mesh() const { return mesh_; }
 
 private:
-  /// Seen within about a pixel's angle: what is left of a triangle that is not shown whole.
-  bool is_small(const std::array<Vec3, 3>& eye) const {
-    const double angle = 2 * pixel_size(picture_.raster);
+  /// Whether the sides are seen under less than this angle.
+  static bool is_within(const std::array<Vec3, 3>& eye, double angle) {
     for (int k = 0; k < 3; ++k)
       if (glm::length(eye[k] - eye[(k + 1) % 3]) > angle * std::min(glm::length(eye[k]), glm::length(eye[(k + 1) % 3]))) return false;
     return true;

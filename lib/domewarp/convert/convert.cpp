@@ -51,7 +51,7 @@ void check_shading(const ConvertOptions& options) {
   if (options.bake.shadows && options.shading != Shading::bake) throw Error(ErrorCode::usage, "--shadows: needs --shading bake");
 }
 
-Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, RefineOptions refine_options, const Display& display, ConvertReport& report) {
+Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, const Display& display, RefineOptions refine_options, ConvertReport& report) {
   LightBaker baker(scene, report.view, options.bake);
   baker.attach(refine_options);
   Scene warped = refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
@@ -102,7 +102,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
     refine_options.is_hidden = [&seen, margin](const Vec2& low, const Vec2& high, double nearest) { return seen->is_hidden(low, high, margin, nearest); };
     tell(progress, "refine");
   }
-  Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, std::move(refine_options), display, report)
+  Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, display, std::move(refine_options), report)
                                                   : refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
   if (options.shading == Shading::unlit)
     for (Material& material : warped.materials) material.unlit = true;

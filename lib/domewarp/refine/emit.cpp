@@ -208,17 +208,17 @@ private:
   }
 
   void fill_attributes(Primitive& out) const {
-    const std::vector<const Attribute*>& attributes = job_.values.written(part_);
-    for (const Attribute* attribute : attributes)
+    const std::vector<const Attribute*>& kept = job_.values.written(part_);
+    for (const Attribute* attribute : kept)
       out.attributes.push_back({attribute->name, attribute->components, std::vector<float>(corners_.size() * attribute->components)});
     parallel_ranges(corners_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       std::vector<double> values(job_.values.stride(part_));
       for (std::size_t i = begin; i < end; ++i) {
         job_.values.get(corners_[i].wedge, part_, values.data());
         const double* at = values.data();
-        for (std::size_t k = 0; k < attributes.size(); ++k) {
-          writer_.write(*attributes[k], at, &out.attributes[k].values[i * attributes[k]->components]);
-          at += attributes[k]->components;
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+          writer_.write(*kept[k], at, &out.attributes[k].values[i * kept[k]->components]);
+          at += kept[k]->components;
         }
       }
     });

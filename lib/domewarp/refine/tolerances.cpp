@@ -17,10 +17,11 @@ constexpr double file_rounding = 0x1p-22;
 } // namespace
 
 OracleOptions oracle_options(const RefineOptions& options, const Raster& raster) {
-  if (options.subdivision == Subdivision::none) return {1e30, 1e30, 1e30, options.projection, options.criterion, options.criterion_px * pixel_size(raster)};
   const double tolerance = options.tolerance_px * pixel_size(raster), edge = edge_share * tolerance;
-  return {edge, std::max(edge, tolerance - file_rounding), options.depth_tolerance, options.projection, options.criterion,
-          options.criterion_px * pixel_size(raster)};
+  OracleOptions oracle{edge, std::max(edge, tolerance - file_rounding), options.depth_tolerance, options.projection, options.criterion,
+                       options.criterion_px * pixel_size(raster)};
+  if (options.subdivision == Subdivision::none) oracle.tolerance = oracle.face_tolerance = oracle.depth_tolerance = 1e30;
+  return oracle;
 }
 
 double picture_margin(const RefineOptions& options, const Raster& raster) { return (options.tolerance_px + 1) * pixel_size(raster); }
