@@ -39,9 +39,8 @@ double written_error(const RefinedMesh& mesh, const RefinedFace& face, const Bra
 }
 
 double edge_error(const MappedPoint& a, const MappedPoint& b, const BranchMap& exact, double t) {
-  const Vec3 from(a.mapped.image * a.mapped.weight, a.mapped.weight), to(b.mapped.image * b.mapped.weight, b.mapped.weight);
-  const Vec3 q = from * (1 - t) + to * t, eye = point_at(a.eye, b.eye, t);
-  return is_shown(exact, eye) ? glm::length(Vec2(q) / q.z - exact.image(eye)) : 0;
+  const Vec3 q = homogeneous(a.mapped) * (1 - t) + homogeneous(b.mapped) * t, eye = point_at(a.eye, b.eye, t);
+  return is_shown(exact, eye) ? glm::length(dehomogenise(q) - exact.image(eye)) : 0;
 }
 
 double median(std::vector<double>& values) {

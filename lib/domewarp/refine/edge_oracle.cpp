@@ -18,14 +18,10 @@ namespace {
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
 constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
-constexpr double spare = 1.1;            ///< by how much more than the middle's deviation the greatest one is taken to be
-constexpr double most_counted = 64;      ///< pieces; what needs more is far from knowing how many
+constexpr double spare = 1.1;          ///< by how much more than the middle's deviation the greatest one is taken to be
+constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
 constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
-
-Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
-
-Vec2 dehomogenise(const Vec3& q) { return Vec2(q) / q.z; }
 
 float rounded_up(double value) {
   const float f = static_cast<float>(value);
@@ -185,6 +181,8 @@ DrawnPoint EdgeOracle::between(const DrawnPoint& p, const DrawnPoint& q) const {
   return middle;
 }
 
+MappedPoint EdgeOracle::vertex_at(const DrawnPoint& p) const { return {p, sides_of(region_, p.eye), p.exact}; }
+
 DrawnPoint halfway(const DrawnPoint& p, const DrawnPoint& q) {
   return {direction_of(point_at(p.eye, q.eye, 0.5)), 0.5 * (p.image + q.image), 0.5 * (p.weight + q.weight), 0.5 * (p.depth + q.depth), 0, 0, {}};
 }
@@ -240,11 +238,11 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   lower(error, depth, arch);
   if (is_good()) return decision;
 
-  const double extent = middle.off / middle.weight + image_extent(a, b, map_point(middle.eye).image);
+  const double extent = middle.off / middle.weight + image_extent(a, b, middle.exact.image);
   if (extent <= options_.tolerance) lower(extent, depth, extent * least);
   if (is_good()) return decision;
   if (has_fold()) return split_by_samples(a, b);
-  decision.split = Split{0.5, {middle, sides_of(region_, middle.eye), middle.exact}};
+  decision.split = Split{0.5, vertex_at(middle)};
   return decision;
 }
 
@@ -252,7 +250,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
 Split EdgeOracle::share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const {
   const double excess = std::max(middle.off / (options_.tolerance * middle.weight), middle.depth_off / options_.depth_tolerance);
   const double pieces = std::ceil(std::sqrt(excess * spare));
-  if (pieces <= 2 || pieces > most_counted) return {0.5, {middle, sides_of(region_, middle.eye), middle.exact}};
+  if (pieces <= 2 || pieces > most_counted) return {0.5, vertex_at(middle)};
   const double share = std::floor(pieces / 2) / pieces;
   const double angle = std::atan2(glm::length(glm::cross(a.eye, b.eye)), glm::dot(a.eye, b.eye));
   const double p = a.rho * std::sin(share * angle), q = b.rho * std::sin((1 - share) * angle), t = p / (p + q);
@@ -260,32 +258,25 @@ Split EdgeOracle::share_out(const MappedPoint& a, const MappedPoint& b, const Dr
   return {t, locate(point_at(a.eye, b.eye, t))};
 }
 
-// Interpolated over exact depth at the midpoint, less 1.
-double EdgeOracle::depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const {
-  if (options_.projection == Projection::orthographic) return 0.5 * (a.rho + b.rho) / middle.rho - 1;
-  return 0.5 * (a.mapped.weight + b.mapped.weight) / middle.mapped.weight - 1;
-}
-
 // Kept when it is short and seven points are within half the tolerance, split at the midpoint otherwise.
 EdgeDecision EdgeOracle::split_by_samples(const MappedPoint& a, const MappedPoint& b) const {
   EdgeDecision decision;
   decision.certified = false;
   // Chords of a rim may be beyond it, so the middle is mapped whatever its sides: left out, its depth would be wrong.
-  MappedPoint middle = locate(point_at(a.eye, b.eye, 0.5));
-  middle.mapped = map_point(middle.eye);
+  const DrawnPoint middle = between(drawn(a), drawn(b));
   const Vec3 from = homogeneous(a.mapped), to = homogeneous(b.mapped);
   double worst = 0;
   for (const int eighth : {4, 2, 6, 1, 3, 5, 7}) {
     const double t = eighth / 8.0;
-    const Vec2 exact = eighth == 4 ? middle.mapped.image : map_point(point_at(a.eye, b.eye, t)).image;
+    const Vec2 exact = eighth == 4 ? middle.exact.image : map_point(point_at(a.eye, b.eye, t)).image;
     ++decision.evaluations;
     worst = std::max(worst, glm::length(dehomogenise(from * (1 - t) + to * t) - exact));
     if (2 * worst > options_.tolerance) break;
   }
   decision.error = decision.arch = rounded_up(worst);
-  decision.depth_error = rounded_up(std::abs(depth_deviation(a, b, middle)));
+  decision.depth_error = rounded_up(middle.depth_off);
   const bool wide = glm::length(b.eye - a.eye) > widest_sampled * std::min(a.rho, b.rho);
-  if (wide || 2 * worst > options_.tolerance || decision.depth_error > options_.depth_tolerance) decision.split = Split{0.5, middle};
+  if (wide || 2 * worst > options_.tolerance || decision.depth_error > options_.depth_tolerance) decision.split = Split{0.5, vertex_at(middle)};
   return decision;
 }
 

@@ -121,9 +121,9 @@ private:
   bool is_good_in_parts(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, int depth, std::size_t& evaluations) const;
   bool is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const;
   double image_extent(const MappedPoint& a, const MappedPoint& b, const Vec2& middle) const;
-  double depth_deviation(const MappedPoint& a, const MappedPoint& b, const MappedPoint& middle) const;
   DrawnPoint drawn(const MappedPoint& p) const;
   DrawnPoint between(const DrawnPoint& p, const DrawnPoint& q) const; ///< one evaluation
+  MappedPoint vertex_at(const DrawnPoint& p) const; ///< p must know where it belongs
   Piece piece(const DrawnPoint& p, const DrawnPoint& q) const;
   Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const;
   EdgeDecision split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const;

@@ -11,7 +11,7 @@
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/t_junctions.h"
 #include "domewarp/refine/hidden_faces.h"
-#include "domewarp/refine/tolerances.h"
+#include "domewarp/refine/picture_rectangle.h"
 #include "domewarp/refine/warped_vertex.h"
 
 namespace domewarp {
@@ -100,11 +100,7 @@ private:
 
 bool is_off_picture(const RefinedMesh& refined, const RefinedFace& face, const Vec2& half_extent) {
   const auto image = [&](int k) { return refined.points[face.point[k]].mapped.image; };
-  const Vec2 a = image(0), b = image(1), c = image(2);
-  for (int axis = 0; axis < 2; ++axis)
-    if (std::min({a[axis], b[axis], c[axis]}) > half_extent[axis] || std::max({a[axis], b[axis], c[axis]}) < -half_extent[axis])
-      return true;
-  return false;
+  return is_beyond(std::array{image(0), image(1), image(2)}, half_extent);
 }
 
 constexpr std::uint32_t no_vertex = 0xffffffff;
@@ -264,10 +260,10 @@ private:
 
 void emit(const Scene& scene, const View& view, const Soup& soup, const RefinedMesh& refined, int orientation,
           const Raster& raster, const RefineOptions& options, Scene& out, RefineReport& report) {
-  const double margin = picture_margin(options, raster);
-  const Vec2 half_extent(aspect(raster) + margin, 1 + margin);
-  std::vector<std::uint8_t> hidden(refined.faces.size());
-  parallel_each(hidden.size(), 256, [&](std::size_t f) { hidden[f] = is_hidden(refined, refined.faces[f], options); });
+  const Vec2 half_extent = kept_half_extent(options, raster);
+  std::vector<std::uint8_t> hidden(refined.faces.size(), 0);
+  if (options.is_hidden)
+    parallel_each(hidden.size(), 256, [&](std::size_t f) { hidden[f] = is_hidden(refined, refined.faces[f], options); });
   std::vector<std::vector<std::uint32_t>> faces_of(soup.parts.size());
   std::vector<std::uint8_t> drawn(soup.wedge_point.size() + soup.extra_wedges.size() + refined.wedges.size(), 0);
   for (std::uint32_t f = 0; f < refined.faces.size(); ++f) {
@@ -315,7 +311,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle&
       if (refined.points[edge.a].sides[i] == 0 && refined.points[edge.b].sides[i] == 0) return true;
     return false;
   };
-  const Vec2 half_extent = Vec2(aspect(raster), 1) + picture_margin(options, raster);
+  const Vec2 half_extent = kept_half_extent(options, raster);
   std::vector<float> errors;
   MeshTopology open;
   for (std::size_t e = 0; e < faces.size(); ++e) {
@@ -325,7 +321,7 @@ void audit_edges(const Soup& soup, const RefinedMesh& refined, const EdgeOracle&
     report.depth_error_max = std::max(report.depth_error_max, static_cast<double>(edge.depth_error));
     report.uncertified_edges += !edge.certified || edge.error * (1 - 1e-6f) > tolerance;
     if (faces[e] != 1 || is_rim(edge)) continue;
-    if (is_beyond(refined.points[edge.a].mapped.image, refined.points[edge.b].mapped.image, half_extent)) continue; // its other face may have been dropped
+    if (is_beyond(std::array{refined.points[edge.a].mapped.image, refined.points[edge.b].mapped.image}, half_extent)) continue; // its other face may have been dropped
     open.edges.push_back({edge.a, edge.b, 1});
     if (edge.source != RefinedEdge::none && soup.topology.edges[edge.source].faces == 1) continue;
     ++report.open_edges;

@@ -16,6 +16,10 @@ struct Mapped {
   double weight = 1;
 };
 
+/// What a rasteriser interpolates linearly, and what it shows of it.
+inline Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
+inline Vec2 dehomogenise(const Vec3& q) { return Vec2(q) / q.z; }
+
 /// A point about the eye with what bounds need of it.
 struct Direction {
   Vec3 eye = Vec3(0); ///< eye space

@@ -16,10 +16,6 @@ int lowest(const Vec3& v) { return v.y < v.x ? (v.z < v.y ? 2 : 1) : (v.z < v.x 
 
 double lowest_of(const Vec3& v) { return v[lowest(v)]; }
 
-Vec3 homogeneous(const Mapped& m) { return Vec3(m.image * m.weight, m.weight); }
-
-Vec2 dehomogenise(const Vec3& q) { return Vec2(q) / q.z; }
-
 } // namespace
 
 bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const {

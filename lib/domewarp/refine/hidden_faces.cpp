@@ -26,7 +26,6 @@ double nearest_distance(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 bool is_hidden(const RefinedMesh& mesh, const RefinedFace& face, const RefineOptions& options) {
-  if (!options.is_hidden) return false;
   const MappedPoint &a = mesh.points[face.point[0]], &b = mesh.points[face.point[1]], &c = mesh.points[face.point[2]];
   const Vec2 low = glm::min(a.mapped.image, glm::min(b.mapped.image, c.mapped.image));
   const Vec2 high = glm::max(a.mapped.image, glm::max(b.mapped.image, c.mapped.image));

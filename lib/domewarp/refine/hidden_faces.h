@@ -9,7 +9,7 @@ namespace domewarp {
 /// Distance from the origin to the nearest point of a triangle.
 double nearest_distance(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Whether RefineOptions::is_hidden, where it is given, says so of a finished face.
+/// What RefineOptions::is_hidden, which must be given, says of a finished face.
 bool is_hidden(const RefinedMesh& mesh, const RefinedFace& face, const RefineOptions& options);
 
 } // namespace domewarp

@@ -9,7 +9,7 @@
 #include "domewarp/core/parallel.h"
 #include "domewarp/mesh/weld.h"
 #include "domewarp/refine/emit.h"
-#include "domewarp/refine/tolerances.h"
+#include "domewarp/refine/picture_rectangle.h"
 #include "domewarp/refine/warped_vertex.h"
 
 namespace domewarp {
@@ -87,7 +87,7 @@ public:
   LineEmitter(const Primitive& source, const View& view, const Mat4& world, const EdgeOracle& oracle, const Raster& raster,
               const RefineOptions& options, RefineReport& report)
       : source_(source), oracle_(oracle), options_(options), written_(written_attributes(source, options)), writer_(view, world),
-        half_extent_(Vec2(aspect(raster), 1) + picture_margin(options, raster)), report_(report), vertices_(source.positions.size()),
+        half_extent_(kept_half_extent(options, raster)), report_(report), vertices_(source.positions.size()),
         vertex_of_(source.positions.size(), unused) {
     parallel_each(vertices_.size(), block_size,
                   [&](std::size_t i) { vertices_[i] = oracle.locate(eye_position(view, world, source.positions[i])); });
@@ -101,7 +101,7 @@ public:
   Primitive points() {
     for (const std::uint32_t index : source_.indices) {
       const MappedPoint& point = vertices_[index];
-      if (is_visible(point) && !is_beyond(point.mapped.image, point.mapped.image, half_extent_))
+      if (is_visible(point) && !is_beyond(std::array{point.mapped.image}, half_extent_))
         out_.indices.push_back(vertex({index, index}, {point, 0, index}));
     }
     report_.points_out += out_.indices.size();
@@ -130,7 +130,7 @@ private:
     double last_t = -1;
     std::uint32_t last = unused;
     for (const Piece& piece : pieces) {
-      if (is_beyond(piece.from.point.mapped.image, piece.to.point.mapped.image, half_extent_)) continue;
+      if (is_beyond(std::array{piece.from.point.mapped.image, piece.to.point.mapped.image}, half_extent_)) continue;
       const std::uint32_t from = piece.from.t == last_t ? last : vertex(segment, piece.from);
       last = vertex(segment, piece.to);
       last_t = piece.to.t;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 
+#include "domewarp/refine/picture_rectangle.h"
 #include "domewarp/refine/view_cull.h"
 
 namespace domewarp {
@@ -15,23 +17,16 @@ namespace {
 
 constexpr double widest = 1.4; ///< radians; a wider cone is not asked about
 
-bool is_mapped(const MappedPoint& p) { return *std::min_element(p.sides.begin(), p.sides.end()) >= 0; }
-
 /// Whether the images of the corners that have one do not lie beyond one side of the rectangle, all of them.
 bool straddles(const std::array<const MappedPoint*, 3>& corners, const Vec2& half_extent) {
-  for (int axis = 0; axis < 2; ++axis)
-    for (const double side : {-1.0, 1.0})
-      if (std::all_of(corners.begin(), corners.end(), [&](const MappedPoint* p) {
-            return !is_mapped(*p) || side * p->mapped.image[axis] > half_extent[axis];
-          }))
-        return false;
-  return true;
+  std::array<Vec2, 3> images;
+  std::size_t mapped = 0;
+  for (const MappedPoint* p : corners)
+    if (*std::min_element(p->sides.begin(), p->sides.end()) >= 0) images[mapped++] = p->mapped.image;
+  return !is_beyond(std::span(images).first(mapped), half_extent);
 }
 
 } // namespace
-
-PictureCull::PictureCull(const BranchMap& map, const Raster& raster, double margin)
-    : map_(map), half_extent_(aspect(raster) + margin, 1 + margin) {}
 
 bool PictureCull::may_be_seen(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const {
   const std::array<const MappedPoint*, 3> corners{&a, &b, &c};

@@ -11,8 +11,8 @@ namespace domewarp {
 class PictureCull {
 public:
   /// @param map must outlive the object
-  /// @param margin by which the rectangle is widened, image units
-  PictureCull(const BranchMap& map, const Raster& raster, double margin);
+  /// @param half_extent of the picture's rectangle (kept_half_extent), image units
+  PictureCull(const BranchMap& map, const Vec2& half_extent) : map_(map), half_extent_(half_extent) {}
 
   /// Never wrong about a face of which a part is within the rectangle.
   bool may_be_seen(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const;

@@ -13,6 +13,7 @@
 #include "domewarp/refine/levels.h"
 #include "domewarp/refine/lines.h"
 #include "domewarp/refine/soup.h"
+#include "domewarp/refine/picture_rectangle.h"
 #include "domewarp/refine/tolerances.h"
 
 namespace domewarp {
@@ -126,7 +127,8 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     return out;
   }
   Stopwatch watch;
-  const ViewCull cull(surface, raster, picture_margin(options, raster));
+  const Vec2 half_extent = kept_half_extent(options, raster);
+  const ViewCull cull(surface, half_extent);
   const Soup soup = make_soup(scene, view, {options.skip.back_faces, options.weld, options.skip.outside_view ? &cull : nullptr});
   report.triangles_in = soup.source_triangles;
   report.skipped.outside_view = soup.outside_view;
@@ -145,7 +147,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options(options, raster));
-    const PictureCull off_picture(branch, raster, picture_margin(options, raster));
+    const PictureCull off_picture(branch, half_extent);
     const RefinedMesh refined = refine_within(soup, oracle, options.max_triangles, options.skip.off_picture ? &off_picture : nullptr);
     report.skipped.off_picture += refined.off_picture;
     report.levels = std::max(report.levels, refined.levels);

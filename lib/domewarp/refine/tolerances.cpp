@@ -24,6 +24,4 @@ OracleOptions oracle_options(const RefineOptions& options, const Raster& raster)
   return oracle;
 }
 
-double picture_margin(const RefineOptions& options, const Raster& raster) { return (options.tolerance_px + 1) * pixel_size(raster); }
-
 } // namespace domewarp

@@ -9,7 +9,4 @@ namespace domewarp {
 /// What the options ask of edges and faces, in image units, less what the rounding of the file may add.
 OracleOptions oracle_options(const RefineOptions& options, const Raster& raster);
 
-/// Faces this far outside the image rectangle are dropped, image units.
-double picture_margin(const RefineOptions& options, const Raster& raster);
-
 } // namespace domewarp

@@ -30,8 +30,7 @@ Ball bounding_ball(const Box& box, const Mat4& world, const View& view) {
   return ball;
 }
 
-ViewCull::ViewCull(const Surface& surface, const Raster& raster, double margin)
-    : surface_(surface), half_extent_(aspect(raster) + margin, 1 + margin) {}
+ViewCull::ViewCull(const Surface& surface, const Vec2& half_extent) : surface_(surface), half_extent_(half_extent) {}
 
 bool ViewCull::may_be_seen(const Ball& ball) const {
   const double distance = glm::length(ball.centre);

@@ -38,8 +38,8 @@ Ball bounding_ball(const Box& box, const Mat4& world, const View& view);
 /// What the picture shows, for asking whether anything of a ball can be seen. Never wrong about what is visible.
 class ViewCull {
 public:
-  /// @param margin by which the picture's rectangle is widened, image units
-  ViewCull(const Surface& surface, const Raster& raster, double margin);
+  /// @param half_extent of the picture's rectangle (kept_half_extent), image units
+  ViewCull(const Surface& surface, const Vec2& half_extent);
 
   bool may_be_seen(const Ball& ball) const;
 

@@ -44,12 +44,6 @@ void count_attributes(const Primitive& source, const std::vector<const Attribute
   skipped.unused_attributes += attributes - written.size();
 }
 
-bool is_beyond(const Vec2& a, const Vec2& b, const Vec2& half_extent) {
-  for (int axis = 0; axis < 2; ++axis)
-    if (std::min(a[axis], b[axis]) > half_extent[axis] || std::max(a[axis], b[axis]) < -half_extent[axis]) return true;
-  return false;
-}
-
 AttributeWriter::AttributeWriter(const View& view, const Mat4& world)
     : directions_(Mat3(world_to_eye(view)) * Mat3(world)), normals_(cofactors(directions_)) {}
 

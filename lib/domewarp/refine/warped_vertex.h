@@ -19,9 +19,6 @@ std::vector<const Attribute*> written_attributes(const Primitive& primitive, con
 /// Counts what a written primitive keeps and leaves out.
 void count_attributes(const Primitive& source, const std::vector<const Attribute*>& written, SkipReport& skipped);
 
-/// Whether two image points lie beyond one side of the rectangle about the image's centre, and so all between them.
-bool is_beyond(const Vec2& a, const Vec2& b, const Vec2& half_extent);
-
 /// Turns directions of a mesh into eye space; other attributes pass as they are.
 class AttributeWriter {
 public:
