@@ -15,6 +15,7 @@
 #include "domewarp/render/parts.h"
 #include "domewarp/render/ray_geometry.h"
 #include "domewarp/render/ray_shade.h"
+#include "domewarp/render/shading.h"
 
 namespace domewarp {
 
@@ -31,15 +32,10 @@ constexpr double on_triangle = 1e-7;
 /// meet, one of which hides the light from the other, belongs to both. Less than a pixel.
 constexpr double inset = 1e-4;
 
-double srgb_of(double linear) {
-  const double y = std::clamp(linear, 0.0, 1.0);
-  return y <= 0.0031308 ? 12.92 * y : 1.055 * std::pow(y, 1 / 2.4) - 0.055;
-}
-
 /// Largest difference on a display, steps of 1/255.
 double visible_difference(const Vec3& x, const Vec3& y) {
   double largest = 0;
-  for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(srgb_of(x[c]) - srgb_of(y[c])));
+  for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(encode_srgb(x[c]) - encode_srgb(y[c])));
   return 255 * largest;
 }
 

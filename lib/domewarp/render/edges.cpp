@@ -2,7 +2,6 @@
 #include "domewarp/render/edges.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -30,12 +29,10 @@ struct Luminance {
 };
 
 Luminance luminance_of(const Pixels& pixels) {
-  std::array<double, 256> linear{};
-  for (std::size_t i = 0; i < 256; ++i) linear[i] = linear_of_srgb(static_cast<std::uint8_t>(i));
   Luminance result{pixels.width, pixels.height, std::vector<float>(pixels.rgba.size() / 4)};
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const std::uint8_t* p = &pixels.rgba[4 * i];
-    result.values[i] = static_cast<float>((0.2126 * linear[p[0]] + 0.7152 * linear[p[1]] + 0.0722 * linear[p[2]]) * p[3] / 255.0);
+    result.values[i] = static_cast<float>(luminance({linear_of_srgb(p[0]), linear_of_srgb(p[1]), linear_of_srgb(p[2])}) * p[3] / 255.0);
   }
   return result;
 }

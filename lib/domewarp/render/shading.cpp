@@ -103,10 +103,14 @@ std::uint8_t srgb_of_linear(double value) {
   return byte;
 }
 
-double lightness(const Vec3& linear) {
-  const double y = std::clamp(glm::dot(linear, Vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0);
+double encode_srgb(double linear) {
+  const double y = std::clamp(linear, 0.0, 1.0);
   return y <= 0.0031308 ? 12.92 * y : 1.055 * std::pow(y, 1 / 2.4) - 0.055;
 }
+
+double luminance(const Vec3& linear) { return glm::dot(linear, Vec3(0.2126, 0.7152, 0.0722)); }
+
+double lightness(const Vec3& linear) { return encode_srgb(luminance(linear)); }
 
 Vec2 transform_uv(const TextureUse& use, const Vec2& uv) {
   const auto& m = use.transform;

@@ -45,6 +45,12 @@ inline constexpr double invisible_alpha = 1.0 / 510;
 
 /// Linear light of an 8-bit sRGB value, and back (rounded, out-of-range values clamped, NaN black).
 double linear_of_srgb(std::uint8_t value);
+
+/// Linear light on the scale of sRGB, 0..1, not rounded; out-of-range values clamped.
+double encode_srgb(double linear);
+
+/// Rec. 709 luminance of a linear colour.
+double luminance(const Vec3& linear);
 std::uint8_t srgb_of_linear(double value);
 
 /// Texture coordinates after the texture transform.

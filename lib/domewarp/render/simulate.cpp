@@ -24,27 +24,22 @@ struct DisplayedPicture::Impl {
   ImageMap map;
   double hidden_from;
 
-  bool is_simple() const { return map.branches.size() == 1 && std::isinf(hidden_from); }
-
   /// The image point of what the eye sees in a direction: the nearest point of the surface.
   std::optional<Vec2> image(const Vec3& direction) const {
+    const bool is_simple = map.branches.size() == 1 && std::isinf(hidden_from);
     std::optional<Vec2> found;
-    double nearest = 0;
+    Vec2 on_curve(0);
     for (const BranchMap& branch : map.branches) {
       const Vec2 inside = branch.inside(direction);
       if (inside.x < 0 || inside.y < 0) continue;
       const Vec2 at = branch.image(direction);
-      if (is_simple()) return at;
-      const std::optional<Vec2> on_curve = surface.meridian(glm::length(at));
-      if (!on_curve) continue;
-      const double distance = glm::length(*on_curve);
-      if (found && distance >= nearest) continue;
-      nearest = distance;
+      if (is_simple) return at;
+      const std::optional<Vec2> here = surface.meridian(glm::length(at));
+      if (!here || (found && glm::length(*here) >= glm::length(on_curve))) continue;
+      on_curve = *here;
       found = at;
     }
-    if (!found || is_simple()) return found;
-    const std::optional<Vec2> on_curve = surface.meridian(glm::length(*found));
-    return on_curve->x < hidden_from ? found : std::nullopt;
+    return on_curve.x < hidden_from ? found : std::nullopt;
   }
 };
 
@@ -104,9 +99,7 @@ Vec3 through(const EyeCamera& camera, const View& axes, double column, double ro
 /// A picture in linear light.
 class LinearPicture {
  public:
-  explicit LinearPicture(const Pixels& pixels) : pixels_(pixels) {
-    for (std::size_t i = 0; i < 256; ++i) linear_[i] = linear_of_srgb(static_cast<std::uint8_t>(i));
-  }
+  explicit LinearPicture(const Pixels& pixels) : pixels_(pixels) {}
 
   /// Light multiplied by alpha, and alpha; none outside the picture.
   Vec4 texel(int column, int row) const {
@@ -114,7 +107,7 @@ class LinearPicture {
     const std::size_t i = std::size_t(row) * std::size_t(pixels_.width) + std::size_t(column);
     const std::uint8_t* p = &pixels_.rgba[4 * i];
     const double alpha = p[3] / 255.0;
-    return {linear_[p[0]] * alpha, linear_[p[1]] * alpha, linear_[p[2]] * alpha, alpha};
+    return {linear_of_srgb(p[0]) * alpha, linear_of_srgb(p[1]) * alpha, linear_of_srgb(p[2]) * alpha, alpha};
   }
 
   Vec4 at(const Vec2& pixel, PictureFilter filter) const {
@@ -129,7 +122,6 @@ class LinearPicture {
 
  private:
   const Pixels& pixels_;
-  std::array<double, 256> linear_{};
 };
 
 } // namespace
