@@ -24,28 +24,42 @@ constexpr std::size_t lanes = HWY_LANES(float);
 
 HWY_INLINE V Broadcast(float value) { return hn::Set(Tag(), value); }
 
-// The three vectors that hold x y z x y z ... and the lanes of the first two that belong to coordinate 0, 1, 2.
+using Lanes = decltype(hn::SetTableIndices(Tag(), static_cast<const int*>(nullptr)));
+
+// For each coordinate or each of the three vectors that hold x y z x y z ...: 1 for the lanes in the first and second
+// vector that belong to the coordinate, where its lanes come from once brought together; 1 for the lanes that belong to z,
+// the points they belong to.
+struct InterleavedLanes {
+  HWY_ALIGN int in_first[3][lanes]{}, in_second[3][lanes]{}, gather[3][lanes]{}, is_z[3][lanes]{}, point[3][lanes]{};
+
+  constexpr InterleavedLanes() {
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < lanes; ++i) {
+        in_first[c][i] = i % 3 == c;
+        in_second[c][i] = (lanes + i) % 3 == c;
+        gather[c][i] = static_cast<int>((3 * i + c) % lanes);
+        is_z[c][i] = (c * lanes + i) % 3 == 2;
+        point[c][i] = static_cast<int>((c * lanes + i) / 3);
+      }
+  }
+};
+
 // As the number of lanes and 3 have no common factor, the lanes of one coordinate in the three vectors are all
 // different: a blend brings them together, and one permutation sorts them.
 struct Interleaving {
-  Mask in_first[3], in_second[3];
-  decltype(hn::SetTableIndices(Tag(), static_cast<const int*>(nullptr))) gather[3], scatter[3];
+  Mask in_first[3], in_second[3], is_z[3];
+  Lanes gather[3], point[3];
 
   HWY_INLINE Interleaving() {
-    for (int c = 0; c < 3; ++c) {
-      HWY_ALIGN float first[lanes], second[lanes];
-      HWY_ALIGN int from[lanes], to[lanes];
-      for (std::size_t i = 0; i < lanes; ++i) {
-        first[i] = i % 3 == static_cast<std::size_t>(c) ? 1.0F : 0.0F;
-        second[i] = (lanes + i) % 3 == static_cast<std::size_t>(c) ? 1.0F : 0.0F;
-        const std::size_t lane = (3 * i + static_cast<std::size_t>(c)) % lanes;
-        from[i] = static_cast<int>(lane);
-        to[lane] = static_cast<int>(i);
-      }
-      in_first[c] = hn::Gt(hn::Load(Tag(), first), hn::Zero(Tag()));
-      in_second[c] = hn::Gt(hn::Load(Tag(), second), hn::Zero(Tag()));
-      gather[c] = hn::SetTableIndices(Tag(), from);
-      scatter[c] = hn::SetTableIndices(Tag(), to);
+    static constexpr InterleavedLanes numbers;
+    const hn::RebindToSigned<Tag> d;
+    const auto mask = [&](const int* from) HWY_ATTR { return hn::RebindMask(Tag(), hn::Gt(hn::Load(d, from), hn::Zero(d))); };
+    for (std::size_t c = 0; c < 3; ++c) {
+      in_first[c] = mask(numbers.in_first[c]);
+      in_second[c] = mask(numbers.in_second[c]);
+      is_z[c] = mask(numbers.is_z[c]);
+      gather[c] = hn::SetTableIndices(Tag(), numbers.gather[c]);
+      point[c] = hn::SetTableIndices(Tag(), numbers.point[c]);
     }
   }
 
@@ -55,74 +69,99 @@ struct Interleaving {
       xyz[i] = hn::TableLookupLanes(hn::IfThenElse(in_first[i], a, hn::IfThenElse(in_second[i], b, c)), gather[i]);
   }
 
-  HWY_INLINE void Store(const V* xyz, float* to) const {
-    const V x = hn::TableLookupLanes(xyz[0], scatter[0]), y = hn::TableLookupLanes(xyz[1], scatter[1]);
-    const V z = hn::TableLookupLanes(xyz[2], scatter[2]);
-    // Coordinate c is in the first vector's lanes in_first[c], and so on.
-    hn::StoreU(hn::IfThenElse(in_first[0], x, hn::IfThenElse(in_first[1], y, z)), Tag(), to);
-    hn::StoreU(hn::IfThenElse(in_second[0], x, hn::IfThenElse(in_second[1], y, z)), Tag(), to + lanes);
-    const Mask third_z = hn::Or(hn::And(in_first[0], in_second[1]), hn::And(in_first[1], in_second[0]));
-    const Mask third_x = hn::Or(hn::And(in_first[1], in_second[2]), hn::And(in_first[2], in_second[1]));
-    hn::StoreU(hn::IfThenElse(third_z, z, hn::IfThenElse(third_x, x, y)), Tag(), to + 2 * lanes);
+  // x factor, y factor, z for the points that `from` holds.
+  HWY_INLINE void Store(const float* from, V factor, V z, float* to) const {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const V xy = hn::LoadU(Tag(), from + c * lanes);
+      const V product = hn::Mul(xy, hn::TableLookupLanes(factor, point[c]));
+      hn::StoreU(hn::IfThenElse(is_z[c], hn::TableLookupLanes(z, point[c]), product), Tag(), to + c * lanes);
+    }
   }
 };
 
-// Squares neither overflow nor lose digits, and the direction is not straight behind.
-HWY_INLINE Mask IsFit(V r2, V d2, V z) {
-  const Mask large_enough = hn::Ge(hn::Min(d2, hn::Max(r2, hn::Neg(z))), Broadcast(0x1p-100F));
-  return hn::And(large_enough, hn::Le(d2, Broadcast(0x1p100F)));
+// Finds out whether all points are fit: their squares neither overflow nor lose digits, and none is straight behind.
+struct Fitness {
+  using Bits = hn::RebindToUnsigned<Tag>;
+  hn::Vec<Bits> least = hn::BitCast(Bits(), Broadcast(1)), most = hn::Zero(Bits());
+
+  // As bits, which are ordered like positive numbers, with nan above them; integer units are less busy.
+  // @param divisor of the half-angle's tangent
+  HWY_INLINE void Add(V divisor, V d2) {
+    least = hn::Min(hn::BitCast(Bits(), divisor), least);
+    most = hn::Max(hn::BitCast(Bits(), d2), most);
+  }
+  static HWY_INLINE Mask Holds(V divisor, V d2) {
+    return hn::And(hn::Ge(divisor, Broadcast(0x1p-50F)), hn::Le(d2, Broadcast(0x1p100F)));
+  }
+  HWY_INLINE bool All() const {
+    return hn::AllTrue(Tag(), Holds(hn::BitCast(Tag(), least), hn::BitCast(Tag(), most)));
+  }
+};
+
+// The larger of two numbers one of which is positive; by their bits, as integer units are less busy.
+HWY_INLINE V LargerNumber(V a, V b) {
+  const hn::RebindToSigned<Tag> d;
+  return hn::BitCast(Tag(), hn::Max(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
 
 // What stage 1 leaves for stage 2.
-struct Scratch {
-  HWY_ALIGN float x[batch_block], y[batch_block], t[batch_block], depth[batch_block];
-  HWY_ALIGN float measure[batch_block]; // what divides x within the branch, besides Q: rho, or r behind
-  HWY_ALIGN float beyond[batch_block];  // what divides x on the tangent extension
-  HWY_ALIGN float out[3 * batch_block];
+struct Place {
+  V r, u, depth, beyond; // beyond: what divides x on the tangent extension
 };
 
-// Stage 1: where on the table a point is. @return whether all points are fit.
-template <bool behind>
-HWY_INLINE bool Locate(const FloatTable& table, const ConstPoints& in, Scratch& scratch) {
-  const Tag d;
-  const Interleaving interleaving;
-  const V alpha = Broadcast(table.alpha), scale = Broadcast(table.scale);
-  const V beyond_z = Broadcast(table.beyond_z), beyond_r = Broadcast(table.beyond_r);
-  const V t_blind = Broadcast(table.t_blind), least = Broadcast(1 / FloatTable::blind_radius);
-  Mask fit = hn::Eq(alpha, alpha);
-  for (std::size_t i = 0; i < batch_block; i += lanes) {
+// Half-angle: tan(theta / 2) = n / o.
+struct HalfAngle {
+  V r, depth, n, o, d2;
+
+  HWY_INLINE HalfAngle(V x, V y, V z) {
+    const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
+    d2 = hn::MulAdd(z, z, r2);
+    r = hn::Sqrt(r2);
+    depth = hn::Sqrt(d2);
+    const V a = hn::Add(depth, hn::Abs(z));
+    n = hn::IfNegativeThenElse(z, r, a);
+    o = hn::IfNegativeThenElse(z, a, r);
+  }
+};
+
+// Stage 1: where on the table a point is.
+struct Locator {
+  Interleaving interleaving;
+  V alpha, beyond_z, beyond_r, u_blind, least;
+  Fitness fitness{};
+
+  HWY_INLINE explicit Locator(const FloatTable& table)
+      : alpha(Broadcast(table.alpha)), beyond_z(Broadcast(table.beyond_z)), beyond_r(Broadcast(table.beyond_r)),
+        u_blind(Broadcast(table.u_blind)), least(Broadcast(1 / FloatTable::blind_radius)) {}
+
+  template <bool behind, bool split>
+  HWY_INLINE void Run(const ConstPoints& in, std::size_t i, Place& place) {
+    const Tag d;
     V p[3];
-    if (in.stride == 1) {
+    if (split) {
       p[0] = hn::LoadU(d, in.x + i);
       p[1] = hn::LoadU(d, in.y + i);
       p[2] = hn::LoadU(d, in.z + i);
     } else {
       interleaving.Load(in.x + 3 * i, p);
     }
-    const V r2 = hn::MulAdd(p[0], p[0], hn::Mul(p[1], p[1])), d2 = hn::MulAdd(p[2], p[2], r2);
-    fit = hn::And(fit, IsFit(r2, d2, p[2]));
-    const V r = hn::Sqrt(r2), depth = hn::Sqrt(d2);
-    const V a = hn::Add(depth, hn::Abs(p[2]));
-    const Mask is_behind = hn::Gt(p[2], hn::Zero(d));
-    const V n = hn::IfThenElse(is_behind, a, r), o = hn::IfThenElse(is_behind, r, a);
-    const V t = hn::MulSub(hn::Div(n, hn::MulAdd(alpha, o, n)), scale, Broadcast(0.5F));
-    const V nearest = hn::Mul(least, r);
-    const V line = hn::NegMulAdd(beyond_z, p[2], hn::Mul(beyond_r, r));
-    hn::Store(p[0], d, scratch.x + i);
-    hn::Store(p[1], d, scratch.y + i);
-    hn::Store(t, d, scratch.t + i);
-    hn::Store(depth, d, scratch.depth + i);
-    if (behind) hn::Store(hn::IfThenElse(hn::Gt(t, Broadcast(table.t_behind)), r, depth), d, scratch.measure + i);
-    hn::Store(hn::IfThenElse(hn::Gt(t, t_blind), nearest, hn::Max(line, nearest)), d, scratch.beyond + i);
+    const HalfAngle half(p[0], p[1], p[2]);
+    fitness.Add(half.o, half.d2);
+    const V u = hn::Div(half.n, hn::MulAdd(alpha, half.o, half.n));
+    const V nearest = hn::Mul(least, half.r);
+    const V line = hn::NegMulAdd(beyond_z, p[2], hn::Mul(beyond_r, half.r));
+    place.u = u;
+    place.depth = half.depth;
+    if (behind) place.r = half.r;
+    place.beyond = LargerNumber(hn::IfThenElseZero(hn::Le(u, u_blind), line), nearest);
   }
-  return hn::AllTrue(d, fit);
-}
+};
 
-// Coefficients of up to 32 pieces in registers, looked up by permutation; from memory where vectors are short.
+// Coefficients of up to 32 pieces, looked up by permutation of registers; from memory where vectors are short.
 template <int pieces>
 struct Coefficients {
   static constexpr bool in_registers = lanes >= 8;
-  static constexpr int registers = in_registers ? pieces / static_cast<int>(lanes) : 1;
+  static constexpr int registers = in_registers && pieces > static_cast<int>(lanes) ? pieces / static_cast<int>(lanes) : 1;
   const float (*rows)[FloatTable::most_pieces];
   V values[FloatTable::powers][registers];
 
@@ -132,18 +171,30 @@ struct Coefficients {
       for (int i = 0; i < registers; ++i) values[power][i] = hn::Load(Tag(), from[power] + static_cast<std::size_t>(i) * lanes);
   }
 
-  // @param piece rounded, as float and as integer
   HWY_INLINE V Pick(int power, V piece, Indices index) const {
-    if constexpr (!in_registers) return hn::GatherIndex(Tag(), rows[power], index);
-    else {
-      const auto lane = hn::IndicesFromVec(Tag(), hn::And(index, hn::Set(hn::RebindToSigned<Tag>(), static_cast<int>(lanes) - 1)));
+    if constexpr (!in_registers) {
+      const Indices in_row = hn::And(index, hn::Set(hn::RebindToSigned<Tag>(), FloatTable::most_pieces - 1));
+      return hn::GatherIndex(Tag(), rows[power], in_row);
+    } else {
+      const auto lane = LaneOf(index);
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+      if constexpr (registers == 2) return V{_mm512_permutex2var_ps(values[power][0].raw, lane.raw, values[power][1].raw)};
+#endif
       V value = hn::TableLookupLanes(values[power][0], lane);
       for (int i = 1; i < registers; ++i) {
-        const Mask here = hn::Ge(piece, Broadcast(static_cast<float>(i * static_cast<int>(lanes))));
+        const Mask here = hn::Gt(piece, Broadcast(static_cast<float>(i * static_cast<int>(lanes)) - 0.5F));
         value = hn::IfThenElse(here, hn::TableLookupLanes(values[power][i], lane), value);
       }
       return value;
     }
+  }
+
+  static HWY_INLINE auto LaneOf(Indices index) {
+#if HWY_ARCH_X86
+    return Lanes{index.raw}; // takes the low bits
+#else
+    return hn::IndicesFromVec(Tag(), hn::And(index, hn::Set(hn::RebindToSigned<Tag>(), static_cast<int>(lanes) - 1)));
+#endif
   }
 
   HWY_INLINE V Evaluate(V x, V piece, Indices index) const {
@@ -154,55 +205,78 @@ struct Coefficients {
 };
 
 // Stage 2: the polynomials and the one division.
-template <int pieces, bool behind, bool perspective>
-HWY_INLINE void Finish(const FloatTable& table, const Scratch& scratch, const Points& out) {
-  const Tag d;
-  const hn::RebindToSigned<Tag> di;
-  const Interleaving interleaving;
-  const Coefficients<pieces> q(table.q), g(perspective ? table.g : table.q);
-  const V t_max = Broadcast(table.t_max), g_beyond = Broadcast(table.g_beyond), one = Broadcast(1);
-  const V last = Broadcast(pieces - 0.5F - pieces * 0x1p-24F), magic = Broadcast(0x1.8p23F);
-  for (std::size_t i = 0; i < batch_block; i += lanes) {
-    const V t = hn::Load(d, scratch.t + i), depth = hn::Load(d, scratch.depth + i);
-    const V within = hn::Min(t, last);
-    const V shifted = hn::Add(within, magic), piece = hn::Sub(shifted, magic), x = hn::Sub(within, piece);
-    const Indices index = hn::And(hn::BitCast(di, shifted), hn::Set(di, FloatTable::most_pieces - 1));
-    const Mask inside = hn::Le(t, t_max);
-    const V measure = behind ? hn::Load(d, scratch.measure + i) : depth;
-    const V divisor = hn::IfThenElse(inside, hn::Mul(measure, q.Evaluate(x, piece, index)), hn::Load(d, scratch.beyond + i));
-    V result[3];
-    V factor = hn::Div(one, divisor);
+template <int pieces, bool behind, bool perspective, bool split>
+struct Finisher {
+  Interleaving interleaving;
+  Coefficients<pieces> q, g;
+  V scale, u_max, g_beyond, last_ahead;
+
+  HWY_INLINE explicit Finisher(const FloatTable& table)
+      : q(table.q), g(perspective ? table.g : table.q), scale(Broadcast(table.scale)), u_max(Broadcast(table.u_max)),
+        g_beyond(Broadcast(table.g_beyond)), last_ahead(Broadcast(table.last_ahead)) {}
+
+  HWY_INLINE void Run(const ConstPoints& in, const Place& place, std::size_t i, const Points& out) const {
+    const Tag d;
+    const hn::RebindToSigned<Tag> di;
+    const V magic = Broadcast(0x1.8p23F), one = Broadcast(1);
+    const V u = place.u, depth = place.depth;
+    const V shifted = hn::MulAdd(u, scale, magic), piece = hn::Sub(shifted, magic), x = hn::MulSub(u, scale, piece);
+    const Indices index = hn::BitCast(di, shifted);
+    const Mask inside = hn::Le(u, u_max);
+    const V measure = behind ? hn::IfThenElse(hn::Gt(piece, last_ahead), place.r, depth) : depth;
+    const V divisor = hn::IfThenElse(inside, hn::Mul(measure, q.Evaluate(x, piece, index)), place.beyond);
+    V factor = hn::Div(one, divisor), z = depth;
     if (perspective) {
       const V w = hn::Mul(depth, hn::IfThenElse(inside, g.Evaluate(x, piece, index), g_beyond));
       factor = hn::Mul(factor, w);
-      result[2] = hn::Neg(w);
-    } else {
-      result[2] = depth;
+      z = hn::Neg(w);
     }
-    result[0] = hn::Mul(hn::Load(d, scratch.x + i), factor);
-    result[1] = hn::Mul(hn::Load(d, scratch.y + i), factor);
-    if (out.stride == 1) {
-      hn::StoreU(result[0], d, out.x + i);
-      hn::StoreU(result[1], d, out.y + i);
-      hn::StoreU(result[2], d, out.z + i);
+    if (split) {
+      hn::StoreU(hn::Mul(hn::LoadU(d, in.x + i), factor), d, out.x + i);
+      hn::StoreU(hn::Mul(hn::LoadU(d, in.y + i), factor), d, out.y + i);
+      hn::StoreU(z, d, out.z + i);
     } else {
-      interleaving.Store(result, out.x + 3 * i);
+      interleaving.Store(in.x + 3 * i, factor, z, out.x + 3 * i);
     }
   }
+};
+
+// The second stage follows the first at a distance, so that the divisions and roots of one overlap the arithmetic of the
+// other.
+template <int pieces, bool behind, bool perspective, bool split>
+HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out) {
+  Locator locator(table);
+  const Finisher<pieces, behind, perspective, split> finisher(table);
+  constexpr std::size_t lag = 6, vectors = batch_block / lanes;
+  Place places[2 * lag];
+  for (std::size_t i = 0; i < lag; ++i) locator.template Run<behind, split>(in, i * lanes, places[i]);
+  for (std::size_t i = lag; i < vectors; ++i) {
+    locator.template Run<behind, split>(in, i * lanes, places[i % (2 * lag)]);
+    finisher.Run(in, places[(i - lag) % (2 * lag)], (i - lag) * lanes, out);
+  }
+  for (std::size_t i = vectors - lag; i < vectors; ++i) finisher.Run(in, places[i % (2 * lag)], i * lanes, out);
+  return !locator.fitness.All();
 }
 
 template <int pieces, bool behind>
-HWY_INLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output, Scratch& scratch) {
-  const bool fit = Locate<behind>(table, in, scratch);
-  if (output == BatchOutput::image) Finish<pieces, behind, false>(table, scratch, out);
-  else Finish<pieces, behind, true>(table, scratch, out);
-  return !fit;
+bool MapTo(BatchOutput output, const FloatTable& table, const ConstPoints& in, const Points& out) {
+  const bool split = in.stride == 1;
+  if (output == BatchOutput::image)
+    return split ? Map<pieces, behind, false, true>(table, in, out) : Map<pieces, behind, false, false>(table, in, out);
+  return split ? Map<pieces, behind, true, true>(table, in, out) : Map<pieces, behind, true, false>(table, in, out);
 }
 
-bool MapInto(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output, Scratch& scratch) {
-  if (table.pieces == 16)
-    return table.reaches_behind() ? Map<16, true>(table, in, out, output, scratch) : Map<16, false>(table, in, out, output, scratch);
-  return table.reaches_behind() ? Map<32, true>(table, in, out, output, scratch) : Map<32, false>(table, in, out, output, scratch);
+template <int pieces>
+bool MapPieces(BatchOutput output, const FloatTable& table, const ConstPoints& in, const Points& out) {
+  return table.reaches_behind() ? MapTo<pieces, true>(output, table, in, out) : MapTo<pieces, false>(output, table, in, out);
+}
+
+bool MapInto(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
+  switch (table.pieces) {
+  case 8: return MapPieces<8>(output, table, in, out);
+  case 16: return MapPieces<16>(output, table, in, out);
+  default: return MapPieces<32>(output, table, in, out);
+  }
 }
 
 // Streams whole vectors; what is left before the first and after the last aligned one is stored as usual.
@@ -216,15 +290,14 @@ HWY_INLINE void Stream(const float* from, float* to, std::size_t count) {
 }
 
 bool MapBlock(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output, bool streams) {
-  Scratch scratch;
-  if (!streams) return MapInto(table, in, out, output, scratch);
-  float* const x = scratch.out;
+  if (!streams) return MapInto(table, in, out, output);
+  HWY_ALIGN float x[3 * batch_block];
   if (out.stride == 3) {
-    const bool unfit = MapInto(table, in, {x, x + 1, x + 2, 3}, output, scratch);
+    const bool unfit = MapInto(table, in, {x, x + 1, x + 2, 3}, output);
     Stream(x, out.x, 3 * batch_block);
     return unfit;
   }
-  const bool unfit = MapInto(table, in, {x, x + batch_block, x + 2 * batch_block, 1}, output, scratch);
+  const bool unfit = MapInto(table, in, {x, x + batch_block, x + 2 * batch_block, 1}, output);
   Stream(x, out.x, batch_block);
   Stream(x + batch_block, out.y, batch_block);
   Stream(x + 2 * batch_block, out.z, batch_block);
@@ -235,9 +308,8 @@ void FindUnfit(const ConstPoints& in, std::uint8_t* flags) {
   const Tag d;
   HWY_ALIGN float marks[lanes];
   for (std::size_t i = 0; i < batch_block; i += lanes) {
-    const V x = hn::LoadU(d, in.x + i), y = hn::LoadU(d, in.y + i), z = hn::LoadU(d, in.z + i);
-    const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
-    hn::Store(hn::IfThenElse(IsFit(r2, hn::MulAdd(z, z, r2), z), hn::Zero(d), Broadcast(1)), d, marks);
+    const HalfAngle half(hn::LoadU(d, in.x + i), hn::LoadU(d, in.y + i), hn::LoadU(d, in.z + i));
+    hn::Store(hn::IfThenElse(Fitness::Holds(half.o, half.d2), hn::Zero(d), Broadcast(1)), d, marks);
     for (std::size_t lane = 0; lane < lanes; ++lane) flags[i + lane] = marks[lane] != 0;
   }
 }

@@ -10,7 +10,7 @@
 namespace domewarp {
 
 /// Points that the kernel takes at a time: what it keeps between its two stages fits the L1 cache.
-inline constexpr std::size_t batch_block = 512;
+inline constexpr std::size_t batch_block = 1024;
 
 /// Maps a whole block; see BatchMap::map. Picks the widest instruction set at run time; those with fused
 /// multiply-add (AVX2, AVX-512) give the same bits.

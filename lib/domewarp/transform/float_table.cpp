@@ -26,7 +26,6 @@ struct Index {
     const double a = 1 + std::abs(c), n = c < 0 ? a : s, o = c < 0 ? s : a;
     return n / (n + alpha * o);
   }
-  double position(double s, double c) const { return u(s, c) * scale - 0.5; }
   Vec2 direction(double u_value) const {
     const double n = alpha * u_value, o = 1 - u_value, square = n * n + o * o;
     return {2 * n * o / square, (o - n) * (o + n) / square};
@@ -76,8 +75,8 @@ public:
     fit_.table.alpha = static_cast<float>(alpha);
     fit_.table.scale = static_cast<float>(scale());
     index_.scale = fit_.table.scale;
-    used_ = std::clamp(static_cast<int>(std::ceil(u_end_ * index_.scale - 1e-5)), 1, pieces);
-    t_behind_ = std::round(index_.position(std::sin(behind_from), std::cos(behind_from))) + 0.5;
+    used_ = static_cast<int>(std::round(u_end_ * index_.scale)) + 1;
+    last_ahead_ = std::round(index_.u(std::sin(behind_from), std::cos(behind_from)) * index_.scale);
   }
 
   /// False as soon as a piece is off by more than `allowed`.
@@ -96,9 +95,9 @@ public:
     fit_weights();
     FloatTable& table = fit_.table;
     constexpr float never = std::numeric_limits<float>::infinity();
-    table.t_behind = static_cast<float>(t_behind_);
+    table.last_ahead = static_cast<float>(last_ahead_);
     const double s = std::sin(branch_.theta_high), c = std::cos(branch_.theta_high);
-    table.t_max = branch_.theta_high >= pi ? never : static_cast<float>(index_.position(s, c));
+    table.u_max = branch_.theta_high >= pi ? never : static_cast<float>(index_.u(s, c));
     extend(s, c);
     return fit_;
   }
@@ -108,20 +107,25 @@ private:
     double x, q, radius, u;
   };
 
-  // A single kink falls on the edge of a piece.
+  // The rim is where the last piece ends, but for what rounding takes; a single kink falls on the edge of a piece.
   double scale() const {
-    const double even = fit_.table.pieces / u_end_;
+    constexpr double rounding = 1e-4;
+    const double even = (fit_.table.pieces - 0.5 - rounding) / u_end_;
     const std::vector<double>& joints = surface_.joints(0);
     if (joints.size() != 1) return even;
     const double kink = index_.u(std::sin(joints.front()), std::cos(joints.front()));
-    return std::max(1.0, std::floor(even * kink)) / kink;
+    for (double edge = std::floor(even * kink + 0.5) - 0.5; edge > 0; --edge) {
+      const double end = u_end_ * edge / kink + 0.5;
+      if (std::abs(end - std::round(end)) > rounding) return edge / kink;
+    }
+    return 0.5 / kink;
   }
 
-  bool is_behind(int piece) const { return piece > t_behind_; }
+  bool is_behind(int piece) const { return piece > last_ahead_; }
 
   double radius_at_edge(int edge) const {
     if (edge == used_) return branch_.radius_high;
-    const Vec2 way = index_.direction(edge / index_.scale);
+    const Vec2 way = index_.direction((edge - 0.5) / index_.scale);
     return surface_.radius(0, way.x, way.y);
   }
 
@@ -129,7 +133,7 @@ private:
   Sample sample(int piece, double radius) const {
     const Vec2 way = *surface_.direction(std::min(radius, surface_.r_max())); // the end of a piece may round up
     const double u = index_.u(way.x, way.y);
-    return {u * index_.scale - 0.5 - piece, is_behind(piece) ? 1 / radius : way.x / radius, radius, u};
+    return {u * index_.scale - piece, is_behind(piece) ? 1 / radius : way.x / radius, radius, u};
   }
 
   bool fit_piece(int piece, double low, double high, double allowed) {
@@ -156,7 +160,7 @@ private:
 
   // dR / dtheta of the fitted piece.
   double radius_slope(int piece, double x) const {
-    const double u = (piece + x + 0.5) / index_.scale;
+    const double u = (piece + x) / index_.scale;
     const Vec2 way = index_.direction(u);
     const double q = evaluate(pieces_[piece], x), dq = slope(pieces_[piece], x) * index_.scale / index_.theta_slope(u);
     return is_behind(piece) ? -dq / (q * q) : (way.y - way.x * dq / q) / q;
@@ -165,8 +169,8 @@ private:
   void fit_weights() {
     const double mean = mean_slope(surface_, 0);
     for (int k = 0; k < used_; ++k) {
-      const double last = std::min(0.5, u_end_ * index_.scale - 0.5 - k);
-      const auto place = [&](double x) { return -0.5 + 0.5 * (last + 0.5) * (1 + x); };
+      const double first = k == 0 ? 0 : -0.5, last = std::min(0.5, u_end_ * index_.scale - k);
+      const auto place = [&](double x) { return first + 0.5 * (last - first) * (1 + x); };
       std::array<double, nodes> x, y;
       for (int i = 0; i < nodes; ++i) {
         x[i] = place(chebyshev_node(i));
@@ -190,20 +194,20 @@ private:
     const auto radius = surface_.extended_radius(Vec3(s2, 0, -c2));
     constexpr double narrow = 1e-6;
     if (!radius || blind_from - branch_.theta_high < narrow) {
-      table.t_blind = table.t_max;
+      table.u_blind = table.u_max;
       return;
     }
     const double right = s / branch_.radius_high, right2 = s2 / *radius, determinant = c * s2 - c2 * s;
     table.beyond_z = static_cast<float>((right * s2 - right2 * s) / determinant);
     table.beyond_r = static_cast<float>((c * right2 - c2 * right) / determinant);
-    table.t_blind = static_cast<float>(index_.position(std::sin(blind_from), std::cos(blind_from)));
+    table.u_blind = static_cast<float>(index_.u(std::sin(blind_from), std::cos(blind_from)));
   }
 
   const Surface& surface_;
   const Branch& branch_;
   Index index_{};
   FloatFit fit_;
-  double u_end_ = 1, condition_ = 0, t_behind_ = 0;
+  double u_end_ = 1, condition_ = 0, last_ahead_ = 0;
   int used_ = 0; ///< pieces up to the rim
   std::vector<Piece> pieces_;
 };
@@ -214,15 +218,15 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
   const auto& branches = surface.branches();
   const Branch& first = branches.front();
   if (branches.size() != 1 || first.theta_low != 0 || first.orientation < 0 || first.fold_high) return std::nullopt;
-  constexpr double usable_weight = 0.05; // any smooth positive weight draws the same picture
+  constexpr double fine_weight = 2.5e-3, usable_weight = 0.05; // any smooth positive weight draws the same picture
   constexpr double aim = 0.2;             // of what is allowed: look no further
   std::optional<FloatFit> best;
-  for (const int pieces : {16, 32})
+  for (const int pieces : {8, 16, 32})
     for (const double alpha : {1.0, 4.0, 0.5, 2.0, 16.0, 0.25}) {
       Fitter fitter(surface, alpha, pieces);
       if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
       FloatFit fit = fitter.finish();
-      if (fit.weight_error > usable_weight) continue;
+      if (fit.weight_error > (pieces < FloatTable::most_pieces ? fine_weight : usable_weight)) continue;
       best = fit;
       if (best->predicted_error <= aim * max_error) return best;
     }

@@ -10,8 +10,8 @@ namespace domewarp {
 /// What the batch kernel keeps in registers: one branch that rises from the axis, with the tangent extension and the
 /// projector folded in, in single precision.
 ///
-/// Index: t = u scale - 1/2 with u = n / (n + alpha o) and tan(theta / 2) = n / o, analytic over all directions; piece
-/// round(t), position t - round(t) in [-1/2, 1/2]. Value: x' = x / (rho Q), Q = sin(theta) / R(theta). On the tangent
+/// Index: u = n / (n + alpha o) with tan(theta / 2) = n / o, analytic over all directions; piece round(u scale), position
+/// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q), Q = sin(theta) / R(theta). On the tangent
 /// line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
 struct FloatTable {
   static constexpr int degree = 5;
@@ -19,17 +19,17 @@ struct FloatTable {
   static constexpr int most_pieces = 32;
   static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
 
-  int pieces = 16;
+  int pieces = 16; ///< 8, 16 or 32
   float alpha = 1, scale = 1;
-  float t_max = 0;      ///< beyond: tangent extension
-  float t_behind = 0;   ///< beyond, Q is 1 / R and divides x / r: sin(theta) / R vanishes on the backward axis
-  float t_blind = 0;    ///< beyond: blind
+  float u_max = 0;      ///< beyond: tangent extension
+  float last_ahead = 0; ///< beyond that piece, Q is 1 / R and divides x / r: sin(theta) / R vanishes on the backward axis
+  float u_blind = 0;    ///< beyond: blind
   float beyond_z = 0, beyond_r = 0;
   float g_beyond = 1;
   alignas(64) float q[powers][most_pieces]{}; ///< coefficients, highest power first
   alignas(64) float g[powers][most_pieces]{}; ///< of the perspective output's weight
 
-  bool reaches_behind() const { return t_max > t_behind; }
+  bool reaches_behind() const { return u_max * scale > last_ahead + 0.5F; }
 };
 
 /// A table with what it is expected to be off by.
