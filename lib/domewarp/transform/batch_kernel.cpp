@@ -106,7 +106,9 @@ HWY_INLINE V LargerNumber(V a, V b) {
 
 // What stage 1 leaves for stage 2.
 struct Place {
-  V r, u, depth, beyond; // beyond: what divides x on the tangent extension
+  V r, u, depth;
+  V beyond;   // what divides x on the tangent extension
+  V finer;    // what u lacks, where that is found in double precision
 };
 
 // Half-angle: tan(theta / 2) = n / o.
@@ -124,17 +126,64 @@ struct HalfAngle {
   }
 };
 
+// 1 / v to 5 %, of positive v.
+HWY_INLINE V RoughInverse(V v) {
+  const hn::RebindToUnsigned<Tag> d;
+  return hn::BitCast(Tag(), hn::Sub(hn::Set(d, 0x7EF127EAU), hn::BitCast(d, v)));
+}
+
+// Halves of a vector in double precision; a scalar is both of its halves.
+#if HWY_TARGET == HWY_SCALAR
+using DoubleTag = hn::Rebind<double, Tag>;
+using W = hn::Vec<DoubleTag>;
+HWY_INLINE W Half(V v, bool) { return hn::PromoteTo(DoubleTag(), v); }
+HWY_INLINE V Join(W lower, W) { return hn::DemoteTo(Tag(), lower); }
+#else
+using DoubleTag = hn::Repartition<double, Tag>;
+using W = hn::Vec<DoubleTag>;
+HWY_INLINE W Half(V v, bool upper) {
+  const hn::Half<Tag> half;
+  return hn::PromoteTo(DoubleTag(), upper ? hn::UpperHalf(half, v) : hn::LowerHalf(half, v));
+}
+HWY_INLINE V Join(W lower, W upper) {
+  const hn::Half<Tag> half;
+  return hn::Combine(Tag(), hn::DemoteTo(half, upper), hn::DemoteTo(half, lower));
+}
+#endif
+
+// One step of Newton's in double precision from what single precision makes of a root, with 1 / root to 5 %, leaves a
+// twentieth of its rounding.
+HWY_INLINE W FineRoot(W square, W root) {
+  const hn::RebindToUnsigned<DoubleTag> bits;
+  const W half_inverse = hn::BitCast(DoubleTag(), hn::Sub(hn::Set(bits, 0x7FCE24FD40000000U), hn::BitCast(bits, root)));
+  return hn::MulAdd(hn::NegMulAdd(root, root, square), half_inverse, root);
+}
+
+// What is left of n - u (n + alpha o) in double precision, where single precision makes it 0.
+HWY_INLINE V Remainder(const V* p, const HalfAngle& half, V u, float alpha) {
+  const V r = hn::Max(half.r, Broadcast(0x1p-75F)); // has an inverse
+  const auto of_half = [&](bool upper) HWY_ATTR {
+    const W x = Half(p[0], upper), y = Half(p[1], upper), z = Half(p[2], upper);
+    const W square = hn::MulAdd(x, x, hn::Mul(y, y)), side = FineRoot(square, Half(r, upper));
+    const W a = hn::Add(FineRoot(hn::MulAdd(z, z, square), Half(half.depth, upper)), hn::Abs(z));
+    const W n = hn::IfNegativeThenElse(z, side, a), o = hn::IfNegativeThenElse(z, a, side);
+    return hn::NegMulAdd(Half(u, upper), hn::MulAdd(hn::Set(DoubleTag(), alpha), o, n), n);
+  };
+  return Join(of_half(false), of_half(true));
+}
+
 // Stage 1: where on the table a point is.
 struct Locator {
   Interleaving interleaving;
   V alpha, beyond_z, beyond_r, u_blind, least;
+  float exact_alpha;
   Fitness fitness{};
 
   HWY_INLINE explicit Locator(const FloatTable& table)
       : alpha(Broadcast(table.alpha)), beyond_z(Broadcast(table.beyond_z)), beyond_r(Broadcast(table.beyond_r)),
-        u_blind(Broadcast(table.u_blind)), least(Broadcast(1 / FloatTable::blind_radius)) {}
+        u_blind(Broadcast(table.u_blind)), least(Broadcast(1 / FloatTable::blind_radius)), exact_alpha(table.alpha) {}
 
-  template <bool behind, bool split>
+  template <bool fine, bool behind, bool split>
   HWY_INLINE void Run(const ConstPoints& in, std::size_t i, Place& place) {
     const Tag d;
     V p[3];
@@ -147,28 +196,29 @@ struct Locator {
     }
     const HalfAngle half(p[0], p[1], p[2]);
     fitness.Add(half.o, half.d2);
-    const V u = hn::Div(half.n, hn::MulAdd(alpha, half.o, half.n));
+    const V bottom = hn::MulAdd(alpha, half.o, half.n), u = hn::Div(half.n, bottom);
     const V nearest = hn::Mul(least, half.r);
     const V line = hn::NegMulAdd(beyond_z, p[2], hn::Mul(beyond_r, half.r));
     place.u = u;
     place.depth = half.depth;
     if (behind) place.r = half.r;
+    if (fine) place.finer = hn::Mul(Remainder(p, half, u, exact_alpha), RoughInverse(bottom));
     place.beyond = LargerNumber(hn::IfThenElseZero(hn::Le(u, u_blind), line), nearest);
   }
 };
 
 // Coefficients of up to 32 pieces, looked up by permutation of registers; from memory where vectors are short.
-template <int pieces>
+template <int pieces, int powers>
 struct Coefficients {
   static constexpr bool in_registers = lanes >= 8;
   static constexpr int registers = in_registers && pieces > static_cast<int>(lanes) ? pieces / static_cast<int>(lanes) : 1;
   const float (*rows)[FloatTable::most_pieces];
-  V values[FloatTable::powers][registers];
+  V values[powers][registers];
 
-  HWY_INLINE explicit Coefficients(const float (*from)[FloatTable::most_pieces]) : rows(from) {
+  HWY_INLINE explicit Coefficients(const float (*from)[FloatTable::most_pieces]) : rows(from + FloatTable::most_powers - powers) {
     if (!in_registers) return;
-    for (int power = 0; power < FloatTable::powers; ++power)
-      for (int i = 0; i < registers; ++i) values[power][i] = hn::Load(Tag(), from[power] + static_cast<std::size_t>(i) * lanes);
+    for (int power = 0; power < powers; ++power)
+      for (int i = 0; i < registers; ++i) values[power][i] = hn::Load(Tag(), rows[power] + static_cast<std::size_t>(i) * lanes);
   }
 
   HWY_INLINE V Pick(int power, V piece, Indices index) const {
@@ -199,16 +249,16 @@ struct Coefficients {
 
   HWY_INLINE V Evaluate(V x, V piece, Indices index) const {
     V value = Pick(0, piece, index);
-    for (int power = 1; power < FloatTable::powers; ++power) value = hn::MulAdd(value, x, Pick(power, piece, index));
+    for (int power = 1; power < powers; ++power) value = hn::MulAdd(value, x, Pick(power, piece, index));
     return value;
   }
 };
 
 // Stage 2: the polynomials and the one division.
-template <int pieces, bool behind, bool perspective, bool split>
+template <int pieces, bool fine, bool behind, bool perspective, bool split>
 struct Finisher {
   Interleaving interleaving;
-  Coefficients<pieces> q, g;
+  Coefficients<pieces, FloatTable::powers(fine)> q, g;
   V scale, u_max, g_beyond, last_ahead;
 
   HWY_INLINE explicit Finisher(const FloatTable& table)
@@ -218,14 +268,15 @@ struct Finisher {
   HWY_INLINE void Run(const ConstPoints& in, const Place& place, std::size_t i, const Points& out) const {
     const Tag d;
     const hn::RebindToSigned<Tag> di;
-    const V magic = Broadcast(0x1.8p23F), one = Broadcast(1);
     const V u = place.u, depth = place.depth;
-    const V shifted = hn::MulAdd(u, scale, magic), piece = hn::Sub(shifted, magic), x = hn::MulSub(u, scale, piece);
+    const V magic = Broadcast(0x1.8p23F), shifted = hn::MulAdd(u, scale, magic), piece = hn::Sub(shifted, magic);
+    V x = hn::MulSub(u, scale, piece);
+    if (fine) x = hn::MulAdd(place.finer, scale, x);
     const Indices index = hn::BitCast(di, shifted);
     const Mask inside = hn::Le(u, u_max);
     const V measure = behind ? hn::IfThenElse(hn::Gt(piece, last_ahead), place.r, depth) : depth;
     const V divisor = hn::IfThenElse(inside, hn::Mul(measure, q.Evaluate(x, piece, index)), place.beyond);
-    V factor = hn::Div(one, divisor), z = depth;
+    V factor = hn::Div(Broadcast(1), divisor), z = depth;
     if (perspective) {
       const V w = hn::Mul(depth, hn::IfThenElse(inside, g.Evaluate(x, piece, index), g_beyond));
       factor = hn::Mul(factor, w);
@@ -243,39 +294,40 @@ struct Finisher {
 
 // The second stage follows the first at a distance, so that the divisions and roots of one overlap the arithmetic of the
 // other.
-template <int pieces, bool behind, bool perspective, bool split>
+template <int pieces, bool fine, bool behind, bool perspective, bool split>
 HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out) {
   Locator locator(table);
-  const Finisher<pieces, behind, perspective, split> finisher(table);
+  const Finisher<pieces, fine, behind, perspective, split> finisher(table);
   constexpr std::size_t lag = 6, vectors = batch_block / lanes;
   Place places[2 * lag];
-  for (std::size_t i = 0; i < lag; ++i) locator.template Run<behind, split>(in, i * lanes, places[i]);
+  for (std::size_t i = 0; i < lag; ++i) locator.template Run<fine, behind, split>(in, i * lanes, places[i]);
   for (std::size_t i = lag; i < vectors; ++i) {
-    locator.template Run<behind, split>(in, i * lanes, places[i % (2 * lag)]);
+    locator.template Run<fine, behind, split>(in, i * lanes, places[i % (2 * lag)]);
     finisher.Run(in, places[(i - lag) % (2 * lag)], (i - lag) * lanes, out);
   }
   for (std::size_t i = vectors - lag; i < vectors; ++i) finisher.Run(in, places[i % (2 * lag)], i * lanes, out);
   return !locator.fitness.All();
 }
 
-template <int pieces, bool behind>
-bool MapTo(BatchOutput output, const FloatTable& table, const ConstPoints& in, const Points& out) {
-  const bool split = in.stride == 1;
-  if (output == BatchOutput::image)
-    return split ? Map<pieces, behind, false, true>(table, in, out) : Map<pieces, behind, false, false>(table, in, out);
-  return split ? Map<pieces, behind, true, true>(table, in, out) : Map<pieces, behind, true, false>(table, in, out);
+template <int pieces, bool fine, bool behind, bool perspective>
+bool MapLayout(const FloatTable& table, const ConstPoints& in, const Points& out) {
+  return in.stride == 1 ? Map<pieces, fine, behind, perspective, true>(table, in, out)
+                        : Map<pieces, fine, behind, perspective, false>(table, in, out);
 }
 
-template <int pieces>
-bool MapPieces(BatchOutput output, const FloatTable& table, const ConstPoints& in, const Points& out) {
-  return table.reaches_behind() ? MapTo<pieces, true>(output, table, in, out) : MapTo<pieces, false>(output, table, in, out);
+template <int pieces, bool fine>
+bool MapWith(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
+  const bool behind = table.reaches_behind();
+  if (output == BatchOutput::image) return behind ? MapLayout<pieces, fine, true, false>(table, in, out) : MapLayout<pieces, fine, false, false>(table, in, out);
+  return behind ? MapLayout<pieces, fine, true, true>(table, in, out) : MapLayout<pieces, fine, false, true>(table, in, out);
 }
 
 bool MapInto(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
+  if (table.fine) return MapWith<32, true>(table, in, out, output);
   switch (table.pieces) {
-  case 8: return MapPieces<8>(output, table, in, out);
-  case 16: return MapPieces<16>(output, table, in, out);
-  default: return MapPieces<32>(output, table, in, out);
+  case 8: return MapWith<8, false>(table, in, out, output);
+  case 16: return MapWith<16, false>(table, in, out, output);
+  default: return MapWith<32, false>(table, in, out, output);
   }
 }
 

@@ -14,7 +14,7 @@ namespace domewarp {
 
 namespace {
 
-constexpr int nodes = FloatTable::powers;
+constexpr int most_nodes = FloatTable::most_powers;
 constexpr double pi = std::numbers::pi;
 constexpr double behind_from = 1.75; // radians: Q is still far from 0 there
 
@@ -36,7 +36,8 @@ struct Index {
   }
 };
 
-using Piece = std::array<double, nodes>; // coefficients, highest power first
+// A polynomial's coefficients, highest power first, and its nodes; the first are not used where the degree is lower.
+using Piece = std::array<double, most_nodes>;
 
 double evaluate(const Piece& piece, double x) {
   double value = 0;
@@ -46,12 +47,12 @@ double evaluate(const Piece& piece, double x) {
 
 double slope(const Piece& piece, double x) {
   double value = 0;
-  for (int i = 0; i + 1 < nodes; ++i) value = value * x + (nodes - 1 - i) * piece[i];
+  for (int i = 0; i + 1 < most_nodes; ++i) value = value * x + (most_nodes - 1 - i) * piece[i];
   return value;
 }
 
 // Newton's divided differences, multiplied out.
-Piece interpolate(const std::array<double, nodes>& x, std::array<double, nodes> y) {
+Piece interpolate(const Piece& x, Piece y, int nodes) {
   for (int order = 1; order < nodes; ++order)
     for (int i = nodes - 1; i >= order; --i) y[i] = (y[i] - y[i - 1]) / (x[i] - x[i - order]);
   Piece lowest_first{};
@@ -63,15 +64,14 @@ Piece interpolate(const std::array<double, nodes>& x, std::array<double, nodes> 
   return lowest_first;
 }
 
-// -1 to 1.
-double chebyshev_node(int i) { return -std::cos(pi * (i + 0.5) / nodes); }
-
 class Fitter {
 public:
-  Fitter(const Surface& surface, double alpha, int pieces) : surface_(surface), branch_(surface.branches().front()) {
+  Fitter(const Surface& surface, double alpha, int pieces, bool fine)
+      : surface_(surface), branch_(surface.branches().front()), nodes_(FloatTable::powers(fine)) {
     index_ = {alpha, 1};
     u_end_ = branch_.theta_high >= pi ? 1 : index_.u(std::sin(branch_.theta_high), std::cos(branch_.theta_high));
     fit_.table.pieces = pieces;
+    fit_.table.fine = fine;
     fit_.table.alpha = static_cast<float>(alpha);
     fit_.table.scale = static_cast<float>(scale());
     index_.scale = fit_.table.scale;
@@ -87,7 +87,8 @@ public:
       if (!fit_piece(k, low, high, allowed)) return false;
       low = high;
     }
-    fit_.predicted_error = fit_.approximation + 1.2e-7 * condition_ + 3e-7 * branch_.radius_high;
+    const double rounding = fit_.table.fine ? 3.6e-7 * branch_.radius_high : 1.2e-7 * condition_ + 3e-7 * branch_.radius_high;
+    fit_.predicted_error = fit_.approximation + rounding;
     return fit_.predicted_error <= allowed;
   }
 
@@ -103,6 +104,9 @@ public:
   }
 
 private:
+  // -1 to 1.
+  double chebyshev_node(int i) const { return -std::cos(pi * (i + 0.5) / nodes_); }
+
   struct Sample {
     double x, q, radius, u;
   };
@@ -138,18 +142,18 @@ private:
 
   bool fit_piece(int piece, double low, double high, double allowed) {
     const auto at = [&](double x) { return sample(piece, low + 0.5 * (high - low) * (1 + x)); };
-    std::array<Sample, nodes> samples;
-    std::array<double, nodes> x, y;
-    for (int i = 0; i < nodes; ++i) {
+    std::array<Sample, most_nodes> samples;
+    Piece x{}, y{};
+    for (int i = 0; i < nodes_; ++i) {
       samples[i] = at(chebyshev_node(i));
       x[i] = samples[i].x;
       y[i] = samples[i].q;
       if (i > 0) condition_ = std::max(condition_, samples[i].u * (samples[i].radius - samples[i - 1].radius) / (samples[i].u - samples[i - 1].u));
     }
-    pieces_.push_back(interpolate(x, y));
-    for (int power = 0; power < nodes; ++power) fit_.table.q[power][piece] = static_cast<float>(pieces_.back()[power]);
-    for (int i = 0; i <= nodes; ++i) {
-      const double place = std::max(-std::cos(pi * i / nodes), low == 0 ? -0.999 : -1.0); // Q is 0/0 on the axis
+    pieces_.push_back(interpolate(x, y, nodes_));
+    for (int power = 0; power < most_nodes; ++power) fit_.table.q[power][piece] = static_cast<float>(pieces_.back()[power]);
+    for (int i = 0; i <= nodes_; ++i) {
+      const double place = std::max(-std::cos(pi * i / nodes_), low == 0 ? -0.999 : -1.0); // Q is 0/0 on the axis
       const Sample between = at(place);
       const double error = between.radius * std::abs(evaluate(pieces_.back(), between.x) / between.q - 1);
       if (!(error <= allowed)) return false; // not a number either
@@ -171,15 +175,15 @@ private:
     for (int k = 0; k < used_; ++k) {
       const double first = k == 0 ? 0 : -0.5, last = std::min(0.5, u_end_ * index_.scale - k);
       const auto place = [&](double x) { return first + 0.5 * (last - first) * (1 + x); };
-      std::array<double, nodes> x, y;
-      for (int i = 0; i < nodes; ++i) {
+      Piece x{}, y{};
+      for (int i = 0; i < nodes_; ++i) {
         x[i] = place(chebyshev_node(i));
         y[i] = weight(radius_slope(k, x[i]), mean);
       }
-      const Piece piece = interpolate(x, y);
-      for (int power = 0; power < nodes; ++power) fit_.table.g[power][k] = static_cast<float>(piece[power]);
-      for (int i = 0; i <= nodes; ++i) {
-        const double between = place(-std::cos(pi * i / nodes));
+      const Piece piece = interpolate(x, y, nodes_);
+      for (int power = 0; power < most_nodes; ++power) fit_.table.g[power][k] = static_cast<float>(piece[power]);
+      for (int i = 0; i <= nodes_; ++i) {
+        const double between = place(-std::cos(pi * i / nodes_));
         fit_.weight_error = std::max(fit_.weight_error, std::abs(evaluate(piece, between) / weight(radius_slope(k, between), mean) - 1));
       }
     }
@@ -207,6 +211,7 @@ private:
   const Branch& branch_;
   Index index_{};
   FloatFit fit_;
+  int nodes_;
   double u_end_ = 1, condition_ = 0, last_ahead_ = 0;
   int used_ = 0; ///< pieces up to the rim
   std::vector<Piece> pieces_;
@@ -220,16 +225,22 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
   if (branches.size() != 1 || first.theta_low != 0 || first.orientation < 0 || first.fold_high) return std::nullopt;
   constexpr double fine_weight = 2.5e-3, usable_weight = 0.05; // any smooth positive weight draws the same picture
   constexpr double aim = 0.2;             // of what is allowed: look no further
-  std::optional<FloatFit> best;
   for (const int pieces : {8, 16, 32})
     for (const double alpha : {1.0, 4.0, 0.5, 2.0, 16.0, 0.25}) {
-      Fitter fitter(surface, alpha, pieces);
-      if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
-      FloatFit fit = fitter.finish();
-      if (fit.weight_error > (pieces < FloatTable::most_pieces ? fine_weight : usable_weight)) continue;
-      best = fit;
-      if (best->predicted_error <= aim * max_error) return best;
+      Fitter fitter(surface, alpha, pieces, false);
+      if (!fitter.fit(aim * max_error)) continue;
+      const FloatFit fit = fitter.finish();
+      if (fit.weight_error <= (pieces < FloatTable::most_pieces ? fine_weight : usable_weight)) return fit;
     }
+  std::optional<FloatFit> best;
+  for (const double alpha : {16.0, 4.0, 1.0, 64.0}) {
+    Fitter fitter(surface, alpha, FloatTable::most_pieces, true);
+    if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
+    const FloatFit fit = fitter.finish();
+    if (fit.weight_error > usable_weight) continue;
+    best = fit;
+    if (best->predicted_error <= aim * max_error) return best;
+  }
   return best;
 }
 
