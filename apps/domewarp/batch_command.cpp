@@ -43,12 +43,6 @@ int parse_jobs(const std::string& text) {
   return static_cast<int>(jobs);
 }
 
-std::uint64_t parse_memory(const std::string& text) {
-  const std::size_t mib = parse_count("--max-memory", text);
-  if (mib < 1 || mib > (std::size_t(1) << 40)) throw Error(ErrorCode::usage, "--max-memory: must be at least 1 MiB, got " + text);
-  return std::uint64_t(mib) << 20;
-}
-
 std::string to_line(const BatchRow& row) {
   std::ostringstream line;
   line << (row.up_to_date ? "up to date  " : "converted   ") << row.output.string() << "  " << row.triangles_in << " -> " << row.triangles_out
@@ -108,7 +102,7 @@ void add_batch_command(CLI::App& app, int& status) {
   add_text("--jobs", "Scenes at once (default: one per processor)", "N", [arguments](const std::string& text) { arguments->batch.jobs = parse_jobs(text); });
   add_text("--shard", "Convert part K of N, for several machines", "K/N", [arguments](const std::string& text) { arguments->shard = parse_shard(text); });
   add_text("--max-memory", "Memory for all jobs together; a scene that needs more is refused", "MIB",
-           [arguments](const std::string& text) { arguments->batch.max_memory = parse_memory(text); });
+           [arguments](const std::string& text) { arguments->batch.max_memory = parse_memory("--max-memory", text); });
   command->add_flag("--force", arguments->batch.force, "Convert what is up to date too");
   add_job_options(*command, arguments->job);
   command->add_flag("--json", arguments->json, "Print the summary as JSON");

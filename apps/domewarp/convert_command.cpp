@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "domewarp/convert/job.h"
+#include "domewarp/convert/memory_estimate.h"
 #include "domewarp/convert/report.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
+#include "domewarp/core/memory.h"
 #include "domewarp/core/parallel.h"
 #include "frames.h"
 #include "options.h"
@@ -26,6 +30,7 @@ struct Arguments {
   double fps = 30;
   bool json = false, quiet = false;
   int threads = 0;
+  std::uint64_t max_memory = 0; ///< bytes, 0: no limit
 };
 
 void print(const Arguments& arguments, const std::string& output, const ConvertReport& report) {
@@ -63,13 +68,34 @@ bool convert_frames(const Arguments& arguments, DisplayCache& displays, std::str
   return kept;
 }
 
+bool convert_all(const Arguments& arguments, std::string& json) {
+  DisplayCache displays;
+  if (arguments.frames) return convert_frames(arguments, displays, json);
+  return convert_one(arguments, arguments.job, arguments.output, displays, json);
+}
+
+/// The same with no more memory than allowed. @throws Error(unkept) where that is not enough
+bool convert_within(Arguments arguments, std::string& json) {
+  const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::unkept, arguments.input + ": " + why); };
+  limit_memory(arguments.max_memory);
+  const FileSurvey survey = survey_file(arguments.input, arguments.job.read.allow_external);
+  const std::string why = memory_refusal(estimate_memory(survey, arguments.job.convert), arguments.max_memory);
+  if (!why.empty()) refuse(why);
+  std::size_t& most = arguments.job.read.max_bytes;
+  most = std::min<std::size_t>(most, arguments.max_memory);
+  try {
+    return convert_all(arguments, json);
+  } catch (const std::bad_alloc&) {
+    refuse(memory_exhausted(arguments.max_memory));
+  }
+  return false;
+}
+
 int run(const Arguments& arguments) {
   require_surface(arguments.job.convert.surface);
   const ThreadLimit threads(arguments.threads);
-  DisplayCache displays;
   std::string json;
-  const bool kept = arguments.frames ? convert_frames(arguments, displays, json)
-                                     : convert_one(arguments, arguments.job, arguments.output, displays, json);
+  const bool kept = arguments.max_memory > 0 ? convert_within(arguments, json) : convert_all(arguments, json);
   if (!arguments.report.empty()) write_file(arguments.report, json);
   if (arguments.json) std::cout << json;
   return kept ? 0 : static_cast<int>(ErrorCode::unkept);
@@ -88,6 +114,9 @@ void add_convert_command(CLI::App& app, int& status) {
          }, "Write frames FIRST to LAST of the animation, as OUT.0000.glb and so on")->type_name("FIRST:LAST");
   command->add_option("--fps", arguments->fps, "Frames per second of --frames (default 30)")->check(CLI::PositiveNumber);
   command->add_option("--report", arguments->report, "Write the report as JSON")->type_name("FILE.json");
+  command->add_option_function<std::string>("--max-memory", [arguments](const std::string& text) {
+           arguments->max_memory = parse_memory("--max-memory", text);
+         }, "Refuse a scene that needs more memory, exit status 3")->type_name("MIB");
   command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
   command->add_flag("--json", arguments->json, "Print the report as JSON");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");

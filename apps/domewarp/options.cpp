@@ -38,6 +38,12 @@ double parse_positive(const std::string& option, const std::string& text) {
   return value;
 }
 
+std::uint64_t parse_memory(const std::string& option, const std::string& text) {
+  const std::size_t mib = parse_count(option, text);
+  if (mib < 1 || mib > (std::size_t(1) << 40)) throw Error(ErrorCode::usage, option + ": must be at least 1 MiB, got " + text);
+  return std::uint64_t(mib) << 20;
+}
+
 Vec3 parse_vector(const std::string& option, const std::string& text) {
   Vec3 v;
   std::size_t begin = 0;
@@ -198,7 +204,7 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
 void add_bake_options(CLI::App& app, BakeOptions& bake) {
   auto* group = app.add_option_group("Light (--shading bake)");
   group->add_flag("--shadows", bake.shadows, "Let opaque surfaces keep the scene's lights away");
-  add(*group, "--light-tolerance", "What the light of a white surface may be off along an edge, steps of 1/255 of sRGB (default 4)", "STEPS",
+  add(*group, "--light-tolerance", "What the light of a white surface may be off along an edge, steps of 1/255 of sRGB (default 4); judged at three places of the edge, not certified", "STEPS",
       [&bake](const std::string& text) { bake.tolerance = parse_positive("--light-tolerance", text); });
   add(*group, "--exposure", "Brighten the scene's lights by so many stops (default 0)", "STOPS",
       [&bake](const std::string& text) { bake.exposure = parse_number("--exposure", text); });
@@ -214,6 +220,7 @@ void add_job_options(CLI::App& app, JobOptions& job) {
   add_bake_options(app, job.convert.bake);
   app.add_flag("--draco", job.write.draco, "Compress with KHR_draco_mesh_compression, one grid for the file");
   app.add_flag("--quantize", job.write.quantize, "Store integers (KHR_mesh_quantization), one grid for the file");
+  app.add_flag("--meshopt", job.write.meshopt, "Compress with EXT_meshopt_compression, without loss; together with --quantize smaller yet");
   add_read_options(app, job.read);
 }
 

@@ -20,6 +20,9 @@ double parse_positive(const std::string& option, const std::string& text);
 /// A whole number >= 0. @throws Error(usage)
 std::size_t parse_count(const std::string& option, const std::string& text);
 
+/// MiB, at least 1, as bytes. @throws Error(usage)
+std::uint64_t parse_memory(const std::string& option, const std::string& text);
+
 /// "X,Y,Z". @throws Error(usage)
 Vec3 parse_vector(const std::string& option, const std::string& text);
 

@@ -2,7 +2,7 @@
 // Converts every sample file and judges what comes out: exit code, the Khronos validator, and the rasterised picture
 // against ray tracing. Broken files must be refused or read with a warning, and the sentence must name their defect.
 // Usage: node matrix.mjs DOMEWARP ASSETS [--filter TEXT] [--size N] [--jobs N] [--variants] [--table FILE.md]
-//   --variants: convert to .gltf, with --draco and with --quantize too
+//   --variants: convert to .gltf, compressed in each way, orthographic, and with light in the colours too
 import { spawn } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
@@ -78,16 +78,27 @@ async function convert(file, output, ...more) {
   return result;
 }
 
-/** Every other form of the file that must be sound too. */
+const variants = [
+  ['gltf'], ['glb', '--quantize'], ['glb', '--draco'], ['glb', '--meshopt'], ['gltf', '--meshopt', '--quantize'],
+  ['glb', '--projection', 'orthographic'], ['glb', '--shading', 'bake', '--shadows'],
+];
+
+/** Every other form of the file that must be sound too. The validator cannot look into compressed ones: `inspect` decodes them. */
 async function judgeVariants(file, row) {
-  for (const [extension, ...flags] of [['gltf'], ['glb', '--quantize'], ['glb', '--draco']]) {
+  for (const [extension, ...flags] of variants) {
     const output = path.join(row.folder, `variant${flags.join('')}.${extension}`);
+    const say = (problem) => row.problems.push(`${flags.join(' ')} ${extension}: ${problem}`);
     const result = await convert(file, output, ...flags);
-    if (isCrash(result) || result.code === 2) row.problems.push(`${flags.join(' ')} ${extension}: exit ${result.code} ${result.stderr.trim()}`);
-    else {
-      const checked = await validate(output);
-      row.problems.push(...checked.lines.map((line) => `${flags.join(' ')} ${extension}: ${line}`));
+    if (isCrash(result) || result.code === 2) {
+      say(`exit ${result.code} ${result.stderr.trim()}`);
+      continue;
     }
+    const checked = await validate(output);
+    checked.lines.forEach(say);
+    const inspected = await run(['inspect', output, '--json']);
+    let audit;
+    try { audit = JSON.parse(inspected.stdout); } catch { say(`inspect: exit ${inspected.code} ${inspected.stderr.trim()}`); continue; }
+    if (audit.cracks.torn_positions > 0) say(`${audit.cracks.torn_positions} torn positions once decoded`);
   }
 }
 

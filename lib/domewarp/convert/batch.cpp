@@ -31,8 +31,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::string mib(double bytes) { return std::to_string(static_cast<long long>(bytes / (1 << 20))) + " MiB"; }
-
 /// Removes what write_file of a killed run has left beside these outputs: their names and six characters more.
 void remove_leftovers(const fs::path& out, const std::vector<BatchItem>& items) {
   std::set<std::string> ours;
@@ -192,13 +190,14 @@ private:
     for (std::size_t i = 0; i < items_.size(); ++i) {
       if (report_.rows[i].up_to_date) continue;
       const FileSurvey survey = survey_file(items_[i].input, items_[i].options->read.allow_external);
-      const double memory = estimate_memory(survey);
+      const double memory = estimate_memory(survey, items_[i].options->convert);
       total_bytes_ += survey.file_bytes;
       tasks.push_back({i, survey.file_bytes, memory, false});
     }
     std::erase_if(tasks, [&](const Scheduler::Task& task) {
-      if (options_.max_memory == 0 || task.memory <= static_cast<double>(options_.max_memory)) return false;
-      refuse(task.item, "needs about " + mib(task.memory) + ", --max-memory allows " + mib(static_cast<double>(options_.max_memory)));
+      const std::string why = memory_refusal(task.memory, options_.max_memory);
+      if (why.empty()) return false;
+      refuse(task.item, why);
       finish(task.item, task.bytes);
       return true;
     });
@@ -221,7 +220,7 @@ private:
     } catch (const std::bad_alloc&) {
       release_free_memory();
       if (!task.alone) return scheduler.retry_alone(task);
-      refuse(task.item, "needs more memory than " + (options_.max_memory > 0 ? "--max-memory allows, " + mib(static_cast<double>(options_.max_memory)) : "there is"));
+      refuse(task.item, memory_exhausted(options_.max_memory));
     } catch (const std::exception& error) {
       row.status = BatchStatus::failed;
       row.message = row.input.string() + ": " + error.what();

@@ -48,6 +48,8 @@ std::vector<Light> lights_in_eye_space(const Scene& scene, const View& view, std
 void check_shading(const ConvertOptions& options) {
   if (!(options.bake.tolerance > 0))
     throw Error(ErrorCode::usage, "--light-tolerance: must be greater than 0, got " + std::to_string(options.bake.tolerance));
+  if (options.shading == Shading::bake && !(options.refine.criterion_px > 0))
+    throw Error(ErrorCode::usage, "convert: criterion_px must be greater than 0 to bake light, got " + std::to_string(options.refine.criterion_px));
   if (options.bake.shadows && options.shading != Shading::bake) throw Error(ErrorCode::usage, "--shadows: needs --shading bake");
 }
 
@@ -58,6 +60,13 @@ Scene refine_and_bake(const Scene& scene, const ConvertOptions& options, const D
   report.baked = baker.finish(warped);
   for (const std::string& warning : bake_warnings(report.baked)) report.warnings.push_back(warning);
   return warped;
+}
+
+/// The thesis' recursion knows triangles only.
+void warn_of_lines(const RefineOptions& options, ConvertReport& report) {
+  if (options.subdivision != Subdivision::isotropic || report.refine.lines_in + report.refine.points_in == 0) return;
+  report.warnings.push_back("left out " + std::to_string(report.refine.lines_in) + " line(s) and " + std::to_string(report.refine.points_in) +
+                            " point(s): --subdivide isotropic divides triangles only");
 }
 
 } // namespace
@@ -104,6 +113,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   }
   Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, display, std::move(refine_options), report)
                                                   : refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
+  warn_of_lines(options.refine, report);
   if (options.shading == Shading::unlit)
     for (Material& material : warped.materials) material.unlit = true;
   if (options.shading == Shading::keep) warped.lights = lights_in_eye_space(scene, report.view, report.warnings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/gltf/document.h"
 
+#include <cmath>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ using nlohmann::json;
 
 void Budget::charge(std::size_t count, std::size_t size, const std::string& place) {
   if (size != 0 && count > left_ / size)
-    refuse(place, "needs " + std::to_string(static_cast<double>(count) * static_cast<double>(size) / 1048576) +
+    refuse(place, "needs " + std::to_string(std::llround(static_cast<double>(count) * static_cast<double>(size) / 1048576)) +
                       " MiB, more than the limit leaves");
   left_ -= count * size;
 }

@@ -68,13 +68,15 @@ class SceneWriter {
   SceneWriter(const Scene& scene, const WriteOptions& options, const Placement& placement)
       : scene_(scene), placement_(placement), materials_(scene, placement, layout_, result_.images) {
     if (options.draco && options.quantize) throw Error(ErrorCode::usage, "--draco and --quantize exclude each other");
+    if (options.draco && options.meshopt) throw Error(ErrorCode::usage, "--draco and --meshopt exclude each other");
+    layout_.use_meshopt = options.meshopt;
     packing_ = options.draco ? Packing::draco : options.quantize ? Packing::quantized : Packing::plain;
     if (packing_ == Packing::quantized) grid_ = grid_of(scene, 16);
     if (packing_ == Packing::draco) grid_ = draco_grid(grid_of(scene, 20));
   }
 
   EncodedScene write() {
-    if (packing_ == Packing::plain) layout_.bytes.reserve(plain_size());
+    if (packing_ == Packing::plain && !layout_.use_meshopt) layout_.bytes.reserve(plain_size());
     for (const Instance& instance : scene_.instances) add_instance(instance);
     for (const Camera& camera : scene_.cameras) add_camera(camera);
     for (const Light& light : scene_.lights) add_light(light);
@@ -245,19 +247,34 @@ class SceneWriter {
       if (!accessor.low.empty()) written["min"] = accessor.low;
       if (!accessor.high.empty()) written["max"] = accessor.high;
     }
-    for (const WrittenView& view : layout_.views) {
-      json& written = root["bufferViews"].emplace_back(
-          json{{"buffer", 0}, {"byteOffset", view.offset}, {"byteLength", view.length}});
-      if (view.stride) written["byteStride"] = view.stride;
-      if (view.target) written["target"] = view.target;
-    }
+    for (const WrittenView& view : layout_.views) root["bufferViews"].push_back(view_json(view));
     if (layout_.bytes.empty()) return;
-    if (layout_.bytes.size() > UINT32_MAX)
+    if (std::max(layout_.bytes.size(), layout_.fallback_bytes) > UINT32_MAX)
       throw Error(ErrorCode::output, "the geometry and images need more than the 4 GiB that a glTF buffer can hold");
     json buffer = json::object();
     if (!placement_.binary_uri.empty()) buffer["uri"] = placement_.binary_uri;
     buffer["byteLength"] = layout_.bytes.size();
     root["buffers"] = json::array({buffer});
+    if (layout_.fallback_bytes > 0)
+      root["buffers"].push_back({{"byteLength", layout_.fallback_bytes}, {"extensions", {{meshopt, {{"fallback", true}}}}}});
+  }
+
+  static constexpr const char* meshopt = "EXT_meshopt_compression";
+
+  /// What meshoptimizer decodes has its place in the second buffer, the fallback without data.
+  static json view_json(const WrittenView& view) {
+    const bool is_compressed = view.meshopt.stride > 0;
+    json written = {{"buffer", is_compressed ? 1 : 0}, {"byteOffset", view.offset}, {"byteLength", view.length}};
+    if (view.stride) written["byteStride"] = view.stride;
+    if (view.target) written["target"] = view.target;
+    if (is_compressed)
+      written["extensions"][meshopt] = {{"buffer", 0},
+                                        {"byteOffset", view.meshopt_offset},
+                                        {"byteLength", view.meshopt_length},
+                                        {"byteStride", view.meshopt.stride},
+                                        {"mode", view.meshopt.mode},
+                                        {"count", view.meshopt.count}};
+    return written;
   }
 
   /// Every extension that stands anywhere in the document, in alphabetical order.
@@ -275,6 +292,7 @@ class SceneWriter {
     std::set<std::string> used, required;
     collect_extensions(root, used);
     if (packing_ == Packing::quantized && !meshes_.empty()) required.insert("KHR_mesh_quantization");
+    if (layout_.fallback_bytes > 0) required.insert(meshopt);
     if (uses_draco_) required.insert("KHR_draco_mesh_compression");
     // A texture without a plain source cannot be drawn without its extension.
     if (root.contains("textures"))

@@ -51,13 +51,36 @@ void make_finite(Attribute& attribute) {
   }
 }
 
+/// Whether a stream is smaller, with what the document says of it.
+bool pays(const MeshoptStream& stream, std::size_t plain_bytes) {
+  constexpr std::size_t text_bytes = 160;
+  return stream.bytes.size() + text_bytes < plain_bytes;
+}
+
 } // namespace
 
 int Layout::add_view(std::span<const std::uint8_t> data, int target, std::size_t stride) {
   bytes.resize((bytes.size() + 3) / 4 * 4);
-  views.push_back({bytes.size(), data.size(), stride, target});
+  views.push_back({bytes.size(), data.size(), stride, target, {}});
   bytes.insert(bytes.end(), data.begin(), data.end());
   return static_cast<int>(views.size() - 1);
+}
+
+int Layout::add_vertices(std::span<const std::uint8_t> data, std::size_t count, std::size_t stride) {
+  if (!use_meshopt) return add_view(data, vertex_target, stride);
+  MeshoptStream stream = encode_vertices(data, count, data.size() / count);
+  return pays(stream, data.size()) ? add_stream(std::move(stream), vertex_target) : add_view(data, vertex_target, stride);
+}
+
+int Layout::add_stream(MeshoptStream stream, int target) {
+  const std::size_t decoded = stream.count * stream.stride;
+  const int index = add_view(stream.bytes, target, target == vertex_target ? stream.stride : 0);
+  WrittenView& view = views.back();
+  view.meshopt_offset = std::exchange(view.offset, fallback_bytes);
+  view.meshopt_length = std::exchange(view.length, decoded);
+  view.meshopt = {{}, stream.mode, stream.count, stream.stride};
+  fallback_bytes += (decoded + 3) / 4 * 4;
+  return index;
 }
 
 int Layout::add_accessor(WrittenAccessor accessor) {
@@ -120,7 +143,7 @@ namespace {
 int add_floats(Layout& layout, const std::vector<float>& values, int components) {
   const std::size_t count = values.size() / static_cast<std::size_t>(components);
   return layout.add_accessor(
-      {layout.add_view(bytes_of(values), vertex_target), count, 5126, type_name(components), false, {}, {}});
+      {layout.add_vertices(bytes_of(values), count), count, 5126, type_name(components), false, {}, {}});
 }
 
 int add_positions(Layout& layout, const std::vector<Vec3f>& positions) {
@@ -131,7 +154,7 @@ int add_positions(Layout& layout, const std::vector<Vec3f>& positions) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  return layout.add_accessor({layout.add_view(bytes_of(positions), vertex_target),
+  return layout.add_accessor({layout.add_vertices(bytes_of(positions), positions.size()),
                               positions.size(),
                               5126,
                               "VEC3",
@@ -149,9 +172,20 @@ int add_indices_as(Layout& layout, const std::vector<std::uint32_t>& indices, in
       {layout.add_view(bytes_of(narrow), index_target), indices.size(), component_type, "SCALAR", false, {}, {}});
 }
 
+/// @return -1 where they are smaller as they are. The decoder knows no indices of 8 bits.
+int add_compressed_indices(Layout& layout, const std::vector<std::uint32_t>& indices, bool are_triangles, std::uint32_t largest) {
+  const bool are_wide = largest >= 0xFFFF;
+  MeshoptStream stream = encode_indices(indices, are_triangles, are_wide ? 4 : 2);
+  if (!pays(stream, indices.size() * (are_wide ? 4 : largest < 0xFF ? 1 : 2))) return -1;
+  const int view = layout.add_stream(std::move(stream), index_target);
+  return layout.add_accessor({view, indices.size(), are_wide ? uint32_type : uint16_type, "SCALAR", false, {}, {}});
+}
+
 /// The largest value of each type restarts a primitive, so it cannot be an index.
-int add_indices(Layout& layout, const std::vector<std::uint32_t>& indices) {
+int add_indices(Layout& layout, const std::vector<std::uint32_t>& indices, bool are_triangles) {
   const std::uint32_t largest = *std::max_element(indices.begin(), indices.end());
+  if (layout.use_meshopt)
+    if (const int compressed = add_compressed_indices(layout, indices, are_triangles, largest); compressed >= 0) return compressed;
   if (largest < 0xFF) return add_indices_as<std::uint8_t>(layout, indices, uint8_type);
   if (largest < 0xFFFF) return add_indices_as<std::uint16_t>(layout, indices, uint16_type);
   return add_indices_as<std::uint32_t>(layout, indices, uint32_type);
@@ -177,7 +211,7 @@ int add_integers(Layout& layout, const std::vector<double>& values, int componen
     accessor.low[i % used] = std::min(accessor.low[i % used], static_cast<double>(value));
     accessor.high[i % used] = std::max(accessor.high[i % used], static_cast<double>(value));
   }
-  accessor.view = layout.add_view(bytes, vertex_target, stride == used * sizeof(T) ? 0 : stride);
+  accessor.view = layout.add_vertices(bytes, count, stride == used * sizeof(T) ? 0 : stride);
   if (normalized) accessor.low.clear(), accessor.high.clear();
   return layout.add_accessor(std::move(accessor));
 }
@@ -202,12 +236,13 @@ bool lies_in_unit_range(const std::vector<float>& values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return value >= 0 && value <= 1; });
 }
 
-/// Directions as bytes, colours as bytes, texture coordinates as 16 bits where they do not repeat.
+/// Directions as bytes, texture coordinates as 16 bits where they do not repeat. Colours as 16 bits: they are linear, and
+/// a step of 1/255 near black is 13 steps of the display.
 int add_quantized(Layout& layout, const Attribute& attribute) {
   if (attribute.name == "NORMAL" || attribute.name == "TANGENT")
     return add_integers<std::int8_t>(layout, scaled(attribute.values, 127), attribute.components, int8_type, true);
   if (attribute.name.starts_with("COLOR_"))
-    return add_integers<std::uint8_t>(layout, scaled(attribute.values, 255), attribute.components, uint8_type, true);
+    return add_integers<std::uint16_t>(layout, scaled(attribute.values, 65535), attribute.components, uint16_type, true);
   if (attribute.name.starts_with("TEXCOORD_") && lies_in_unit_range(attribute.values))
     return add_integers<std::uint16_t>(layout, scaled(attribute.values, 65535), attribute.components, uint16_type,
                                        true);
@@ -265,7 +300,7 @@ WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int 
       written.attributes.emplace_back(attribute.name, quantized
                                                           ? add_quantized(layout, attribute)
                                                           : add_floats(layout, attribute.values, attribute.components));
-    written.indices = add_indices(layout, indices);
+    written.indices = add_indices(layout, indices, primitive.topology == Topology::triangles);
   }
   fill_texcoords(vertices, texcoords, layout, written);
   return written;

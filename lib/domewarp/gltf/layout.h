@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "domewarp/core/vectors.h"
+#include "domewarp/gltf/meshopt_encode.h"
 #include "domewarp/scene/scene.h"
 
 namespace domewarp::gltf {
@@ -18,6 +19,8 @@ namespace domewarp::gltf {
 struct WrittenView {
   std::size_t offset = 0, length = 0, stride = 0; ///< stride 0: none
   int target = 0;                                 ///< 34962 vertices, 34963 indices, 0 neither
+  MeshoptStream meshopt;                          ///< stride 0: not compressed; without its bytes, which stand in ours
+  std::size_t meshopt_offset = 0, meshopt_length = 0; ///< of the stream in the buffer; `offset` is in the fallback
 };
 
 struct WrittenAccessor {
@@ -36,14 +39,24 @@ struct WrittenPrimitive {
   std::vector<std::pair<std::string, int>> draco_attributes; ///< name and Draco's unique id
 };
 
-/// The one buffer of a file and what lies in it.
+/// The buffer of a file and what lies in it.
 class Layout {
  public:
   /// Appends bytes at a multiple of four. @return the view's index.
   int add_view(std::span<const std::uint8_t> bytes, int target = 0, std::size_t stride = 0);
+
+  /// Appends `count` equal elements of vertices; compressed where `use_meshopt` says so and it pays.
+  /// @param stride   for the view: 0 when no bytes lie between the elements.
+  int add_vertices(std::span<const std::uint8_t> bytes, std::size_t count, std::size_t stride = 0);
+
+  /// Appends a stream. What it decodes to has its place in a second buffer, which has a length and no data.
+  int add_stream(MeshoptStream stream, int target);
+
   int add_accessor(WrittenAccessor accessor);
 
+  bool use_meshopt = false;
   std::vector<std::uint8_t> bytes;
+  std::size_t fallback_bytes = 0; ///< 0: nothing is compressed by meshoptimizer
   std::vector<WrittenView> views;
   std::vector<WrittenAccessor> accessors;
 };

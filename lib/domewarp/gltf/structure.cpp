@@ -2,6 +2,7 @@
 #include "domewarp/gltf/structure.h"
 
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 #include <nlohmann/json.hpp>
@@ -113,7 +114,7 @@ class Checker {
     case Kind::number:
       return expect(value.is_number(), "a number");
     case Kind::natural:
-      return expect(is_natural(value) && value.get<double>() <= largest_natural, "a whole number");
+      return expect(is_natural(value) && value.get<double>() <= largest_natural, "a whole number below 2^53");
     case Kind::object:
       return expect(value.is_object(), "an object");
     case Kind::index:
@@ -247,6 +248,8 @@ void check_views(Checker& checker, const json& root) {
     if (sparse == accessor.end()) return;
     const Place here{&place, "sparse"};
     checker.check(*sparse, here, sparse_rules);
+    if (sparse->at("count").get<double>() > INT32_MAX) // what tinygltf holds
+      refuse(here.text(), "replaces " + sparse->at("count").dump() + " elements, too many");
     checker.check(sparse->at("indices"), Place{&here, "indices"}, sparse_index_rules);
     checker.check(sparse->at("values"), Place{&here, "values"}, sparse_value_rules);
   });

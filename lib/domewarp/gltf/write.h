@@ -12,6 +12,7 @@ namespace domewarp {
 struct WriteOptions {
   bool draco = false;    ///< KHR_draco_mesh_compression
   bool quantize = false; ///< KHR_mesh_quantization; excludes `draco`
+  bool meshopt = false;  ///< EXT_meshopt_compression, lossless; excludes `draco`
 };
 
 /// Writes a .glb (one file) or a .gltf with NAME.bin and the image files beside it; the extension decides. What no
@@ -21,7 +22,7 @@ struct WriteOptions {
 /// equal. Every file appears complete or not at all. Same scene, same bytes.
 /// @throws Error(output) when a file cannot be written, a position is not finite, a JSON text of the scene is not
 /// valid, or the geometry exceeds 4 GiB;
-/// Error(usage) when the extension is neither .glb nor .gltf or both compressions are asked for.
+/// Error(usage) when the extension is neither .glb nor .gltf or options exclude each other.
 void write_scene(const Scene& scene, const std::filesystem::path& path, const WriteOptions& options = {});
 
 /// The bytes of the .glb file that `write_scene` writes.

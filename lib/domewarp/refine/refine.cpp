@@ -96,12 +96,18 @@ Scene empty_copy(const Scene& scene) {
   return out;
 }
 
+void note_lines(const LineCounts& lines, RefineReport& report) {
+  report.lines_in = lines.lines;
+  report.points_in = lines.points;
+}
+
 /// All branches at once: each point appears on the first that shows it.
 void refine_isotropic(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
                       const RefineOptions& options, Scene& out, RefineReport& report) {
   Stopwatch watch;
   const Soup soup = make_loose_soup(scene, view);
   report.triangles_in = soup.source_triangles;
+  note_lines(count_lines(scene, view), report);
   report.near = options.near > 0 ? options.near : std::max(1e-5 * extent(soup), 1e-30);
   report.soup_ms = watch.lap();
   const RefinedMesh mesh = subdivide_isotropic(soup, surface, map, options.projection, options.isotropic, options.max_triangles, report.isotropic);
@@ -139,8 +145,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   report.t_junctions_in = soup.t_junctions;
   report.open_edges_in = soup.open_edges;
   const LineCounts lines = count_lines(scene, view);
-  report.lines_in = lines.lines;
-  report.points_in = lines.points;
+  note_lines(lines, report);
   report.near = options.near > 0 ? options.near : std::max(1e-5 * std::max(extent(soup), lines.extent), 1e-30);
   report.soup_ms = watch.lap();
 

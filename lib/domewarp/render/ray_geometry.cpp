@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <tuple>
 
 #include <embree3/rtcore.h>
@@ -253,7 +254,7 @@ void RayGeometry::Impl::attach_triangles() {
   rtcReleaseGeometry(mesh);
   void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * part_of.size());
   void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part_of.size());
-  if (!vertices || !indices) fail(device.get(), "has no memory for the triangles");
+  if (!vertices || !indices) throw std::bad_alloc();
   fill(static_cast<float*>(vertices), static_cast<unsigned*>(indices));
   rtcSetGeometryIntersectFilterFunction(mesh, filter_hits);
   rtcSetGeometryOccludedFilterFunction(mesh, filter_blocks);
@@ -267,7 +268,9 @@ void RayGeometry::Impl::commit(const std::string& embree) {
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   if (!part_of.empty()) attach_triangles();
   rtcCommitScene(scene.get());
-  if (const RTCError error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
+  const RTCError error = rtcGetDeviceError(device.get());
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE)
     throw Error(ErrorCode::output,
                 "Embree: cannot build its tree (error " + std::to_string(static_cast<int>(error)) + ")");
 }

@@ -38,6 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     domewarp::encode_glb(scene);
     domewarp::encode_glb(scene, {.draco = true});
     domewarp::encode_glb(scene, {.quantize = true});
+    domewarp::encode_glb(scene, {.meshopt = true});
   } catch (const domewarp::Error&) {
   }
   return 0;

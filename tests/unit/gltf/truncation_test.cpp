@@ -25,7 +25,7 @@ std::vector<std::uint8_t> rich_glb() {
 
 TEST(Truncation, RefusesEveryPrefixOfAGlb) {
   const TemporaryFolder folder;
-  for (const std::vector<std::uint8_t>& glb : {rich_glb(), encode_glb(triangle_file().read(), {.draco = true})}) {
+  for (const std::vector<std::uint8_t>& glb : {rich_glb(), encode_glb(triangle_file().read(), {.draco = true}), encode_glb(triangle_file().read(), {.meshopt = true})}) {
     for (std::size_t size = 0; size < glb.size(); ++size) {
       write_bytes(folder / "cut.glb", {glb.begin(), glb.begin() + static_cast<std::ptrdiff_t>(size)});
       EXPECT_NE(refusal(folder / "cut.glb"), "") << size << " of " << glb.size() << " bytes were read";

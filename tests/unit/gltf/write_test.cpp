@@ -273,9 +273,10 @@ TEST(Write, GivesAValidFileWhenNothingIsDrawn) {
 TEST(Write, RefusesPositionsThatAreNotFinite) {
   Scene scene = one_triangle();
   scene.meshes[0].primitives[0].positions[1].y = std::numeric_limits<float>::infinity();
-  for (const WriteOptions options : {WriteOptions{}, WriteOptions{.draco = true}, WriteOptions{.quantize = true}})
+  for (const WriteOptions options : {WriteOptions{}, WriteOptions{.draco = true}, WriteOptions{.quantize = true}, WriteOptions{.meshopt = true}})
     EXPECT_THROW(encode_glb(scene, options), Error);
   EXPECT_THROW(encode_glb(one_triangle(), {.draco = true, .quantize = true}), Error);
+  EXPECT_THROW(encode_glb(one_triangle(), {.draco = true, .meshopt = true}), Error);
 }
 
 TEST(Write, RefusesTextsThatAreNotJson) {
