@@ -66,6 +66,7 @@ Json skipped_json(const RefineReport& refine) {
   add("back_faces", skipped.back_faces, refine.triangles_in);
   add("degenerate", skipped.degenerate, refine.triangles_in);
   add("off_picture", skipped.off_picture, refined);
+  add("small_faces", skipped.small_faces, refine.triangles_in);
   add("zero_area", skipped.zero_area, refined);
   add("hidden", skipped.hidden, refined);
   add("unused_attributes", skipped.unused_attributes, skipped.attributes);

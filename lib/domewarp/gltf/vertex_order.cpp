@@ -89,7 +89,7 @@ void optimize_vertex_order(Scene& scene) {
   std::vector<Primitive*> primitives;
   for (Mesh& mesh : scene.meshes)
     for (Primitive& primitive : mesh.primitives)
-      if (!primitive.indices.empty()) primitives.push_back(&primitive);
+      if (!primitive.indices.empty() && !primitive.keeps_order) primitives.push_back(&primitive);
   parallel_each(primitives.size(), 1, [&](std::size_t i) {
     Primitive& primitive = *primitives[i];
     const bool blended = primitive.material >= 0 &&

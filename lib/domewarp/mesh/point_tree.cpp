@@ -2,6 +2,7 @@
 #include "domewarp/mesh/point_tree.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -73,23 +74,22 @@ void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, c
   }
 }
 
-std::vector<std::array<std::uint32_t, 2>> near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach) {
-  constexpr std::size_t block_size = 4096;
-  const std::size_t count = tree.ids().size();
-  std::vector<std::vector<std::array<std::uint32_t, 2>>> found((count + block_size - 1) / block_size);
-  parallel_each(found.size(), 1, [&](std::size_t block) {
-    for (std::size_t i = block * block_size; i < std::min(count, (block + 1) * block_size); ++i) {
+// The lower id counts a pair, and the higher one where it alone reaches the other.
+std::size_t count_near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach) {
+  std::atomic<std::size_t> pairs = 0;
+  parallel_ranges(tree.ids().size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t own = tree.ids()[i];
       const Vec3 p = tree.points()[own];
-      tree.visit_near_segment(p, p, reach(p), [&](std::uint32_t other) {
-        if (other != own && glm::length(tree.points()[other] - p) <= reach(p)) found[block].push_back({std::min(own, other), std::max(own, other)});
+      const double far = reach(p);
+      tree.visit_near_segment(p, p, far, [&](std::uint32_t other) {
+        const double distance = glm::length(tree.points()[other] - p);
+        here += other != own && distance <= far && (own < other || distance > reach(tree.points()[other]));
       });
     }
+    pairs += here;
   });
-  std::vector<std::array<std::uint32_t, 2>> pairs;
-  for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 

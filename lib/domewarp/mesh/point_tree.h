@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "domewarp/core/vectors.h"
@@ -40,8 +39,8 @@ private:
   std::vector<Node> nodes_;
 };
 
-/// Every pair of the tree's points that are at most reach(point) of either apart, the lower id first, sorted.
+/// How many pairs of the tree's points are at most reach(point) of either apart.
 /// @param reach >= 0, of a point
-std::vector<std::array<std::uint32_t, 2>> near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach);
+std::size_t count_near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach);
 
 } // namespace domewarp

@@ -59,7 +59,7 @@ std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const Mesh
 
 std::size_t count_near_misses(std::span<const Vec3> points, const MeshTopology& topology, double offset) {
   const auto reach = [&](const Vec3& p) { return std::ldexp(largest(p) + offset, -20); };
-  return near_pairs(PointTree(points, ends_of_open_edges(topology)), reach).size();
+  return count_near_pairs(PointTree(points, ends_of_open_edges(topology)), reach);
 }
 
 } // namespace domewarp

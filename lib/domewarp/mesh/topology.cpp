@@ -92,22 +92,28 @@ MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle>
   return topology;
 }
 
-MeshTopology keep_faces(const MeshTopology& topology, std::span<const std::uint8_t> kept) {
-  std::vector<std::uint32_t> faces(topology.edges.size(), 0), id(topology.edges.size(), 0);
-  for (std::size_t f = 0; f < kept.size(); ++f)
-    if (kept[f])
-      for (const std::uint32_t edge : topology.edges_of[f]) ++faces[edge];
-  MeshTopology result;
-  for (std::size_t e = 0; e < faces.size(); ++e) {
-    id[e] = static_cast<std::uint32_t>(result.edges.size());
-    if (faces[e] > 0) result.edges.push_back({topology.edges[e].a, topology.edges[e].b, faces[e]});
-  }
-  for (std::size_t f = 0; f < kept.size(); ++f)
-    if (kept[f]) {
-      const auto& edges = topology.edges_of[f];
-      result.edges_of.push_back({id[edges[0]], id[edges[1]], id[edges[2]]});
+std::vector<MeshTopology::Edge> find_open_edges(std::uint32_t point_count, std::span<const Triangle> triangles) {
+  const SortedSides sorted = sort_sides(point_count, triangles);
+  std::vector<std::vector<MeshTopology::Edge>> blocks(point_count / grain + 1);
+  parallel_each(blocks.size(), 1, [&](std::size_t block) {
+    for (std::size_t p = block * grain; p < std::min<std::size_t>(point_count, (block + 1) * grain); ++p) {
+      const auto is_same = [&](std::uint32_t i, std::uint32_t j) { return sorted.sides[i].b == sorted.sides[j].b; };
+      const std::uint32_t begin = sorted.begin[p], end = sorted.begin[p + 1];
+      for (std::uint32_t i = begin; i < end; ++i)
+        if ((i == begin || !is_same(i, i - 1)) && (i + 1 == end || !is_same(i, i + 1)))
+          blocks[block].push_back({static_cast<std::uint32_t>(p), sorted.sides[i].b, 1});
     }
-  return result;
+  });
+  std::vector<MeshTopology::Edge> edges;
+  for (const auto& block : blocks) edges.insert(edges.end(), block.begin(), block.end());
+  return edges;
+}
+
+const MeshTopology::Edge* find_edge(std::span<const MeshTopology::Edge> edges, std::uint32_t p, std::uint32_t q) {
+  const auto [a, b] = std::minmax(p, q);
+  const auto is_before = [](const MeshTopology::Edge& edge, const std::pair<std::uint32_t, std::uint32_t>& key) { return std::pair(edge.a, edge.b) < key; };
+  const auto found = std::lower_bound(edges.begin(), edges.end(), std::pair<std::uint32_t, std::uint32_t>(a, b), is_before);
+  return found != edges.end() && found->a == a && found->b == b ? &*found : nullptr;
 }
 
 } // namespace domewarp

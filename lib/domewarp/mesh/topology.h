@@ -26,7 +26,10 @@ struct MeshTopology {
 /// @param point_count every id in `triangles` is below it
 MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle> triangles);
 
-/// Drops the triangles whose flag is 0, and the edges that only they had.
-MeshTopology keep_faces(const MeshTopology& topology, std::span<const std::uint8_t> kept);
+/// The edges of one triangle alone, sorted by a, then b: what build_topology lists with faces == 1, in a third of the memory.
+std::vector<MeshTopology::Edge> find_open_edges(std::uint32_t point_count, std::span<const Triangle> triangles);
+
+/// The edge from p to q, in either order, of a sorted list, or null.
+const MeshTopology::Edge* find_edge(std::span<const MeshTopology::Edge> edges, std::uint32_t p, std::uint32_t q);
 
 } // namespace domewarp

@@ -198,13 +198,20 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   const DrawnPoint from = drawn(a), to = drawn(b);
   const EdgeBend whole = bound_.edge(a, b, from.weight, to.weight);
   const double least = std::min(from.weight, to.weight);
-  // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified.
-  if (!(whole.second / (8 * 64 * least) <= hopeless * options_.tolerance)) return split_by_samples(a, b);
   const auto is_good = [&] { return decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance; };
   decision.error = rounded_up(peak_error(0, 0, whole.second, from.weight, to.weight));
   decision.depth_error = rounded_up(whole.depth);
   decision.arch = rounded_up(whole.second / (8 * least));
   if (is_good()) return decision;
+  const EdgeBend brief = bound_.short_segments({glm::length(b.eye - a.eye), std::min(a.rho, b.rho), std::min(a.u, b.u), std::max(a.u, b.u), least, std::max(from.weight, to.weight)});
+  if (brief.second / (8 * least) <= options_.tolerance && brief.depth <= options_.depth_tolerance) {
+    decision.error = std::min(decision.error, rounded_up(brief.second / (8 * least)));
+    decision.arch = std::min(decision.arch, rounded_up(brief.second / (8 * least)));
+    decision.depth_error = std::min(decision.depth_error, rounded_up(brief.depth));
+    return decision;
+  }
+  // Beside a fold of the curve R' has no bound, and no length of edge would ever be certified.
+  if (!(whole.second / (8 * 64 * least) <= hopeless * options_.tolerance)) return split_by_samples(a, b);
 
   // What the middle is off by is certain; the bounds of the pieces cover the rest.
   const DrawnPoint middle = between(from, to);

@@ -94,6 +94,9 @@ public:
   /// @param evaluations raised by the number of times that the map was asked
   bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, std::size_t& evaluations) const;
 
+  /// See ErrorBound. No edge within a figure whose second / (8 weight_low) and depth are within the tolerances is split for its error.
+  EdgeBend short_segments(const ShortSegments& segments) const { return bound_.short_segments(segments); }
+
   /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 

@@ -25,8 +25,8 @@ double nearest_distance(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::min(sides, std::abs(glm::dot(normal, a)) / glm::length(normal));
 }
 
-bool is_hidden(const RefinedMesh& mesh, const RefinedFace& face, const RefineOptions& options) {
-  const MappedPoint &a = mesh.points[face.point[0]], &b = mesh.points[face.point[1]], &c = mesh.points[face.point[2]];
+bool is_hidden(const std::array<const MappedPoint*, 3>& corner, const RefineOptions& options) {
+  const MappedPoint &a = *corner[0], &b = *corner[1], &c = *corner[2];
   const Vec2 low = glm::min(a.mapped.image, glm::min(b.mapped.image, c.mapped.image));
   const Vec2 high = glm::max(a.mapped.image, glm::max(b.mapped.image, c.mapped.image));
   return options.is_hidden(low, high, nearest_distance(a.eye, b.eye, c.eye));

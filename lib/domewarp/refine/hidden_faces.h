@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "domewarp/refine/levels.h"
+#include <array>
+
 #include "domewarp/refine/refine.h"
 
 namespace domewarp {
@@ -10,6 +11,6 @@ namespace domewarp {
 double nearest_distance(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// What RefineOptions::is_hidden, which must be given, says of a finished face.
-bool is_hidden(const RefinedMesh& mesh, const RefinedFace& face, const RefineOptions& options);
+bool is_hidden(const std::array<const MappedPoint*, 3>& corner, const RefineOptions& options);
 
 } // namespace domewarp

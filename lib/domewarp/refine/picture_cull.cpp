@@ -17,20 +17,19 @@ namespace {
 
 constexpr double widest = 1.4; ///< radians; a wider cone is not asked about
 
-/// Whether the images of the corners that have one do not lie beyond one side of the rectangle, all of them.
-bool straddles(const std::array<const MappedPoint*, 3>& corners, const Vec2& half_extent) {
+} // namespace
+
+bool PictureCull::straddles(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const {
   std::array<Vec2, 3> images;
   std::size_t mapped = 0;
-  for (const MappedPoint* p : corners)
+  for (const MappedPoint* p : {&a, &b, &c})
     if (*std::min_element(p->sides.begin(), p->sides.end()) >= 0) images[mapped++] = p->mapped.image;
-  return !is_beyond(std::span(images).first(mapped), half_extent);
+  return !is_beyond(std::span(images).first(mapped), half_extent_);
 }
-
-} // namespace
 
 bool PictureCull::may_be_seen(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const {
   const std::array<const MappedPoint*, 3> corners{&a, &b, &c};
-  if (straddles(corners, half_extent_)) return true;
+  if (straddles(a, b, c)) return true;
   std::array<Vec3, 3> direction;
   for (int k = 0; k < 3; ++k) {
     if (!(corners[k]->rho > 0)) return true;

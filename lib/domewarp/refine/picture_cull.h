@@ -17,6 +17,9 @@ public:
   /// Never wrong about a face of which a part is within the rectangle.
   bool may_be_seen(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const;
 
+  /// Whether the images of the corners that have one do not lie beyond one side of the rectangle, all of them.
+  bool straddles(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c) const;
+
 private:
   double radius(double theta) const;
 

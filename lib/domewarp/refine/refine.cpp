@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/refine/refine.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/errors.h"
+#include "domewarp/core/parallel.h"
 #include "domewarp/refine/emit.h"
 #include "domewarp/refine/levels.h"
 #include "domewarp/refine/lines.h"
@@ -49,29 +51,33 @@ void check(const RefineOptions& options) {
 }
 
 double extent(const Soup& soup) {
-  double farthest = 0;
-  for (const SoupFace& face : soup.faces)
-    for (const std::uint32_t point : face.point) farthest = std::max(farthest, glm::length(soup.points[point]));
-  return farthest;
+  constexpr std::size_t block_size = 16384;
+  std::vector<double> farthest2((soup.faces.size() + block_size - 1) / block_size, 0);
+  parallel_each(farthest2.size(), 1, [&](std::size_t block) {
+    for (std::size_t f = block * block_size; f < std::min(soup.faces.size(), (block + 1) * block_size); ++f)
+      for (const std::uint32_t point : soup.faces[f].point)
+        farthest2[block] = std::max(farthest2[block], glm::dot(soup.points[point], soup.points[point]));
+  });
+  return farthest2.empty() ? 0 : std::sqrt(*std::max_element(farthest2.begin(), farthest2.end()));
 }
 
 /// Refines within the limit: where the tolerance needs more triangles, every edge gets the same larger one, the
 /// smallest (to a factor of 1.2) that fits. Such a mesh is marked as stopped. When none fits, because the clip alone
 /// needs more, refinement ends where the limit was reached.
-RefinedMesh refine_within(const Soup& soup, const EdgeOracle& oracle, std::size_t max_triangles, const PictureCull* cull) {
-  RefinedMesh mesh = refine_levels(soup, oracle, max_triangles, cull);
+RefinedMesh refine_within(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options) {
+  RefinedMesh mesh = refine_levels(soup, oracle, options);
   if (!mesh.stopped) return mesh;
   constexpr double hopeless = 1e8;
   double high = 1;
   std::optional<RefinedMesh> best;
   while (!best && high < hopeless) {
     high *= 4;
-    if (RefinedMesh tried = refine_levels(soup, oracle.relaxed(high), max_triangles, cull); !tried.stopped) best = std::move(tried);
+    if (RefinedMesh tried = refine_levels(soup, oracle.relaxed(high), options); !tried.stopped) best = std::move(tried);
   }
   if (!best) return mesh;
   for (double low = high / 4; high > 1.2 * low;) {
     const double middle = std::sqrt(low * high);
-    RefinedMesh tried = refine_levels(soup, oracle.relaxed(middle), max_triangles, cull);
+    RefinedMesh tried = refine_levels(soup, oracle.relaxed(middle), options);
     (tried.stopped ? low : high) = middle;
     if (!tried.stopped) best = std::move(tried);
   }
@@ -153,8 +159,9 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options(options, raster));
     const PictureCull off_picture(branch, half_extent);
-    const RefinedMesh refined = refine_within(soup, oracle, options.max_triangles, options.skip.off_picture ? &off_picture : nullptr);
+    const RefinedMesh refined = refine_within(soup, oracle, {options.max_triangles, options.skip.off_picture ? &off_picture : nullptr, options.skip.small_faces});
     report.skipped.off_picture += refined.off_picture;
+    report.skipped.small_faces += refined.whole.size();
     report.levels = std::max(report.levels, refined.levels);
     report.map_evaluations += refined.evaluations;
     report.triangles_clipped += refined.clipped;
@@ -162,7 +169,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
     report.levels_ms += watch.lap();
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
-    audit_edges(soup, refined, oracle, raster, options, report);
+    audit_edges(refined, oracle, raster, options, report);
     emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }

@@ -2,6 +2,7 @@
 #include "domewarp/refine/soup.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -88,6 +89,24 @@ bool is_degenerate(const SoupFace& face) {
   return face.point[0] == face.point[1] || face.point[1] == face.point[2] || face.point[2] == face.point[0];
 }
 
+/// Drops the faces that is_dropped(face) names. @return how many
+template <typename Predicate>
+std::size_t drop_faces(Soup& soup, Predicate&& is_dropped) {
+  std::vector<std::uint8_t> dropped(soup.faces.size());
+  std::atomic<std::size_t> count = 0;
+  parallel_ranges(dropped.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t f = begin; f < end; ++f) here += dropped[f] = is_dropped(soup.faces[f]);
+    count += here;
+  });
+  if (count == 0) return 0;
+  std::size_t next = 0;
+  for (std::size_t f = 0; f < dropped.size(); ++f)
+    if (!dropped[f]) soup.faces[next++] = soup.faces[f];
+  soup.faces.resize(next);
+  return count;
+}
+
 void add_faces(const Scene& scene, Soup& soup) {
   std::vector<std::size_t> first(soup.parts.size() + 1, 0);
   for (std::size_t p = 0; p < soup.parts.size(); ++p) first[p + 1] = first[p] + primitive_of(scene, soup.parts[p]).indices.size() / 3;
@@ -104,38 +123,47 @@ void add_faces(const Scene& scene, Soup& soup) {
     });
   });
   soup.source_triangles = soup.outside_view + soup.faces.size();
-  soup.degenerate_triangles = std::erase_if(soup.faces, is_degenerate);
+  soup.degenerate_triangles = drop_faces(soup, is_degenerate);
 }
 
+/// Only the open edges.
 MeshTopology topology_of(const Soup& soup) {
   std::vector<Triangle> triangles(soup.faces.size());
   parallel_each(triangles.size(), 4096, [&](std::size_t f) { triangles[f] = soup.faces[f].point; });
-  return build_topology(static_cast<std::uint32_t>(soup.points.size()), triangles);
+  return {find_open_edges(static_cast<std::uint32_t>(soup.points.size()), triangles), {}};
 }
 
 /// Splits faces at the points that lie inside their open edges, one point at a time, until none is left.
 class TJunctionSplitter {
 public:
-  explicit TJunctionSplitter(Soup& soup) : soup_(soup), junctions_(find_t_junctions(soup.points, soup.topology)) {}
+  /// @param open the open edges
+  TJunctionSplitter(Soup& soup, const MeshTopology& open) : soup_(soup), open_(open), junctions_(find_t_junctions(soup.points, open)) {}
 
-  void run() {
+  /// @return whether there were any
+  bool run() {
     soup_.t_junctions = junctions_.size();
-    if (junctions_.empty()) return;
+    if (junctions_.empty()) return false;
+    std::vector<std::uint8_t> is_end(soup_.points.size(), 0);
+    for (const TJunction& junction : junctions_) is_end[open_.edges[junction.edge].a] = is_end[open_.edges[junction.edge].b] = 1;
     std::vector<SoupFace> done;
-    for (std::size_t f = 0; f < soup_.faces.size(); ++f) split(soup_.faces[f], soup_.topology.edges_of[f], done);
+    done.reserve(soup_.faces.size() + 2 * junctions_.size());
+    for (const SoupFace& face : soup_.faces) split(face, is_end, done);
     soup_.faces = std::move(done);
-    soup_.topology = topology_of(soup_);
+    return true;
   }
 
 private:
-  void split(const SoupFace& face, const std::array<std::uint32_t, 3>& edges, std::vector<SoupFace>& done) {
+  void split(const SoupFace& face, const std::vector<std::uint8_t>& is_end, std::vector<SoupFace>& done) {
     std::array<std::vector<std::uint32_t>, 3> on; // points to insert on each side, in the face's direction
     for (int k = 0; k < 3; ++k) {
-      const auto range = std::equal_range(junctions_.begin(), junctions_.end(), TJunction{edges[k], 0, 0},
+      const std::uint32_t from = face.point[k], to = face.point[(k + 1) % 3];
+      const MeshTopology::Edge* edge = is_end[from] && is_end[to] ? find_edge(open_.edges, from, to) : nullptr;
+      if (edge == nullptr) continue;
+      const auto range = std::equal_range(junctions_.begin(), junctions_.end(), TJunction{static_cast<std::uint32_t>(edge - open_.edges.data()), 0, 0},
                                           [](const TJunction& x, const TJunction& y) { return x.edge < y.edge; });
       for (auto it = range.first; it != range.second; ++it)
         if (std::find(face.point.begin(), face.point.end(), it->point) == face.point.end()) on[k].push_back(it->point);
-      if (soup_.topology.edges[edges[k]].a != face.point[k]) std::reverse(on[k].begin(), on[k].end());
+      if (edge->a != from) std::reverse(on[k].begin(), on[k].end());
     }
     cut(face, on, done);
   }
@@ -170,6 +198,7 @@ private:
   }
 
   Soup& soup_;
+  const MeshTopology& open_;
   std::vector<TJunction> junctions_;
 };
 
@@ -181,19 +210,11 @@ bool is_seen_from_behind(const Soup& soup, const SoupFace& face) {
 }
 
 void drop_back_faces(const Scene& scene, Soup& soup) {
-  std::vector<std::uint8_t> kept(soup.faces.size());
-  parallel_each(kept.size(), 4096, [&](std::size_t f) {
-    const int material = primitive_of(scene, soup.parts[soup.faces[f].part]).material;
+  soup.back_faces = drop_faces(soup, [&](const SoupFace& face) {
+    const int material = primitive_of(scene, soup.parts[face.part]).material;
     const bool double_sided = material >= 0 && scene.materials[material].double_sided;
-    kept[f] = double_sided || !is_seen_from_behind(soup, soup.faces[f]);
+    return !double_sided && is_seen_from_behind(soup, face);
   });
-  soup.back_faces = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
-  if (soup.back_faces == 0) return;
-  soup.topology = keep_faces(soup.topology, kept);
-  std::size_t next = 0;
-  for (std::size_t f = 0; f < kept.size(); ++f)
-    if (kept[f]) soup.faces[next++] = soup.faces[f];
-  soup.faces.resize(next);
 }
 
 double largest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
@@ -209,10 +230,9 @@ Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options)
   soup.points = std::move(welded.points);
   soup.wedge_point = std::move(welded.point_of);
   add_faces(scene, soup);
-  soup.topology = topology_of(soup);
-  soup.near_misses = count_near_misses(soup.points, soup.topology, largest(view.eye));
-  TJunctionSplitter(soup).run();
-  for (const MeshTopology::Edge& edge : soup.topology.edges) soup.open_edges += edge.faces == 1;
+  const MeshTopology open = topology_of(soup);
+  soup.near_misses = count_near_misses(soup.points, open, largest(view.eye));
+  soup.open_edges = (TJunctionSplitter(soup, open).run() ? topology_of(soup) : open).edges.size();
   if (options.cull_back_faces) drop_back_faces(scene, soup);
   return soup;
 }

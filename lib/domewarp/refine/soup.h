@@ -42,7 +42,6 @@ struct Soup {
   std::vector<std::uint32_t> wedge_point; ///< per source vertex
   std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split
   std::vector<SoupFace> faces;
-  MeshTopology topology;                      ///< of `faces`
   std::size_t source_triangles = 0;
   std::size_t degenerate_triangles = 0;   ///< two corners at one position: dropped, they cover nothing
   std::size_t outside_view = 0;           ///< of primitives that cannot be seen: dropped before anything was transformed

@@ -24,6 +24,9 @@ class AttributeWriter {
 public:
   AttributeWriter(const View& view, const Mat4& world);
 
+  /// Whether an attribute's values change with the space they are in.
+  static bool turns(const Attribute& attribute) { return attribute.name == "NORMAL" || attribute.name == "TANGENT"; }
+
   /// Writes one vertex' values of an attribute, `attribute.components` of them. @param values in the space of the mesh
   void write(const Attribute& attribute, const double* values, float* out) const;
 

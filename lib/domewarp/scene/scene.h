@@ -28,6 +28,7 @@ struct Primitive {
   std::vector<Vec3f> positions;       ///< n, in the space of the mesh
   std::vector<Attribute> attributes;  ///< each n x components
   std::vector<std::uint32_t> indices; ///< 1, 2 or 3 per element, every one < n
+  bool keeps_order = false;           ///< vertices and triangles stand in the order of the file they come from, some left out
 };
 
 struct Mesh {

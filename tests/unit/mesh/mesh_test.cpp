@@ -169,13 +169,19 @@ TEST(Topology, IsTheSameForAnyNumberOfThreads) {
   for (const auto& edge : one.edges) EXPECT_EQ(edge.faces, expected.at({edge.a, edge.b}));
 }
 
-TEST(Topology, KeepingSomeFacesIsBuildingThemAlone) {
+TEST(Topology, OpenEdgesAreThoseOfOneFace) {
   const std::vector<Triangle> soup = {{0, 1, 2}, {2, 1, 3}, {3, 1, 4}, {0, 1, 4}};
-  const std::vector<std::uint8_t> kept = {1, 0, 1, 1};
-  const MeshTopology expected = build_topology(5, std::vector<Triangle>{soup[0], soup[2], soup[3]});
-  const MeshTopology got = keep_faces(build_topology(5, soup), kept);
-  EXPECT_EQ(got.edges_of, expected.edges_of);
-  EXPECT_EQ(face_counts(got), face_counts(expected));
+  const MeshTopology all = build_topology(5, soup);
+  std::vector<std::array<std::uint32_t, 2>> expected, got;
+  for (const MeshTopology::Edge& edge : all.edges)
+    if (edge.faces == 1) expected.push_back({edge.a, edge.b});
+  const std::vector<MeshTopology::Edge> open = find_open_edges(5, soup);
+  for (const MeshTopology::Edge& edge : open) got.push_back({edge.a, edge.b});
+  EXPECT_EQ(got, expected);
+  EXPECT_EQ(got.size(), 4u);
+  ASSERT_NE(find_edge(open, 2, 0), nullptr);
+  EXPECT_EQ(find_edge(open, 2, 0)->b, 2u);
+  EXPECT_EQ(find_edge(open, 1, 2), nullptr) << "an inner edge";
 }
 
 TEST(HalfEdges, KnowLoopsAndEulerCharacteristic) {

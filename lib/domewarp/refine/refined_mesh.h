@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "domewarp/refine/edge_oracle.h"
+#include "domewarp/refine/soup.h"
+
+namespace domewarp {
+
+/// An edge of the refined mesh; `a` precedes `b`.
+struct RefinedEdge {
+  static constexpr std::uint32_t none = 0xffffffff;
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t middle = none;   ///< the point that splits it
+  std::uint32_t child = 0;       ///< its halves: child (with a) and child + 1 (with b)
+  std::uint32_t source = none;   ///< the source edge it is part of (into source_edges), none inside a source face
+  float error = 0, depth_error = 0;
+  float middle_error = -1;       ///< see EdgeDecision
+  float arch = 0;                ///< see EdgeDecision
+  bool certified = true;         ///< see EdgeDecision
+};
+
+struct RefinedFace {
+  Triangle point, wedge, edge;   ///< edge[k] joins corners k and k + 1
+  std::uint32_t source = 0;      ///< index into Soup::faces
+  std::uint8_t insertions = 0;   ///< how many centroids were inserted on the way to it
+};
+
+/// A face of the soup that is drawn as it is and has no edges in the refined mesh.
+struct WholeFace {
+  std::uint32_t source = 0;      ///< index into Soup::faces
+  float error = 0;               ///< bounds each of its sides, image units
+};
+
+/// An edge of the soup that refined faces are on.
+struct SourceEdge {
+  std::uint32_t faces = 0;       ///< of the soup on it
+  std::uint32_t whole = 0;       ///< of these, drawn as they are
+};
+
+/// One branch of the surface, refined and clipped.
+struct RefinedMesh {
+  std::vector<MappedPoint> points; ///< those of the soup first
+  std::size_t source_points = 0;   ///< how many these are
+  std::vector<RefinedEdge> edges;
+  std::vector<SourceEdge> source_edges;
+  std::vector<Wedge> wedges;     ///< those made here; their ids follow the soup's
+  std::vector<std::size_t> wedge_groups; ///< ends of runs of wedges whose parents stand before the run; may be empty
+  std::vector<RefinedFace> faces; ///< final and visible
+  std::vector<WholeFace> whole;  ///< in the order of the soup
+  float whole_depth_error = 0;   ///< bounds them all, relative
+  std::size_t clipped = 0;
+  std::size_t off_picture = 0;   ///< pieces dropped before they were refined, as far outside the picture's rectangle
+  std::size_t uncertified_faces = 0; ///< judged by samples
+  std::size_t evaluations = 0;
+  std::size_t levels = 0;
+  bool stopped = false;          ///< by the limit on triangles
+};
+
+} // namespace domewarp

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the error bound that takes a whole small figure at once.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "domewarp/refine/error_bound.h"
+
+namespace domewarp {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double widest = 0.1; ///< radians; the factors below hold up to there
+constexpr double slack = 1e-9;
+
+/// A bound of the angle that a segment takes up for the eye, which no point of it is nearer to than this allows.
+double angle_of(const ShortSegments& s) {
+  const double nearest = s.nearest - s.longest;
+  return nearest > 0 ? s.longest / nearest : infinity;
+}
+
+double magnitude(const Range& a) { return std::max(-a.low, a.high); }
+
+/// Of the angle theta with this half-angle index; infinite on the axes.
+double cotangent(double u) { return (1 - 2 * u) / (2 * u * (1 - u)); }
+
+} // namespace
+
+// du/dtheta <= 1/2, and every point of the figure is within the angle of a corner.
+double u_margin(const ShortSegments& s) {
+  const double angle = angle_of(s);
+  return angle <= widest ? 0.51 * angle : infinity;
+}
+
+// With kappa <= angle, |c| <= |W'| + W angle, |I_psi| <= max(|R'|, |K|) and |I_psipsi|^2 <= max(|A|, |B|)^2 + C^2 in the
+// terms of ErrorBound. For the depth 1 / cos(psi / 2) - 1 <= 0.126 psi^2; the interpolated g is off by at most a quarter of
+// the range of its slope x g' dpsi/dt, where |dx/dpsi| = |sin(chi)^2 cot(theta)| and dpsi/dt varies by 1 / cos(psi / 2)^2.
+EdgeBend ErrorBound::short_segments(const ShortSegments& s) const {
+  const EdgeBend unknown{infinity, infinity};
+  const double margin = u_margin(s), angle = angle_of(s);
+  if (!(margin < infinity)) return unknown;
+  const double u_low = std::max(0.0, s.u_low - margin), u_high = std::min(1.0, s.u_high + margin);
+  const RadialRange r = ranges_.over(u_low, u_high);
+  if (r.slope_jump > 0 || r.weight_jump > 0) return unknown;
+  const double bend = std::max(magnitude(r.along), magnitude(r.across)), twist = magnitude(r.twist);
+  const double speed = std::max(magnitude(r.slope), magnitude(r.factor));
+  const double change = s.weight_high - s.weight_low + s.weight_high * angle;
+  EdgeBend bound;
+  bound.second = angle * (angle * s.weight_high * std::sqrt(bend * bend + twist * twist) + 2 * change * speed) * (1 + slack);
+  bound.depth = 0.126 * angle * angle;
+  if (projection_ == Projection::perspective) {
+    const double turn = std::min(2.0, 1.01 * angle * std::max(std::abs(cotangent(u_low)), std::abs(cotangent(u_high))));
+    const double range = 1.01 * (r.weight_slope.high - r.weight_slope.low) + magnitude(r.weight_slope) * (1.01 * turn + 0.26 * angle * angle);
+    bound.depth += (1 + bound.depth) * 0.25 * angle * range / r.weight.low;
+  }
+  return bound.second < infinity && bound.depth < infinity ? bound : unknown;
+}
+
+} // namespace domewarp
