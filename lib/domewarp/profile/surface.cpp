@@ -104,15 +104,45 @@ bool Surface::shows(std::size_t branch, const Vec3& p) const {
   return after_low && side_of(span.high, direction) * span.orientation <= 0;
 }
 
-std::optional<double> Surface::extended_radius(const Vec3& p) const {
+namespace {
+
+std::optional<double> within_reach(const SurfaceParts& parts, double image) {
+  return std::isfinite(image) ? std::optional(std::max(image, parts.r_max)) : std::nullopt;
+}
+
+std::optional<double> exact_extended_radius(const SurfaceParts& parts, const Vec3& p) {
   const auto [s, c] = about_axis(p);
-  const QuadPoint rim = parts_->spans.back().high, tangent = parts_->rim_tangent;
+  const QuadPoint rim = parts.spans.back().high, tangent = parts.rim_tangent;
   const Quad moment = rim.z * tangent.r - rim.r * tangent.z, slant = c * tangent.r - s * tangent.z;
   if (!(moment * slant > 0)) return std::nullopt;
-  const Quad r = s * (moment / slant), depth = c * (moment / slant) + parts_->distance;
+  const Quad r = s * (moment / slant), depth = c * (moment / slant) + parts.distance;
   if (!(r >= rim.r * (Quad(1) - 1e-25)) || !(depth > 0)) return std::nullopt;
-  const double image = static_cast<double>(std::isinf(parts_->distance) ? r : r * parts_->distance / depth);
-  return std::isfinite(image) ? std::optional(std::max(image, parts_->r_max)) : std::nullopt;
+  return within_reach(parts, static_cast<double>(std::isinf(parts.distance) ? r : r * parts.distance / depth));
+}
+
+// Whether a sum of two terms has lost so little to cancellation that its sign is sure and it is within 1e-14 if they are to rounding.
+bool is_sure(double a, double b) { return std::abs(a + b) > 0.05 * (std::abs(a) + std::abs(b)); }
+
+} // namespace
+
+std::optional<double> Surface::extended_radius(const Vec3& p) const {
+  const SurfaceParts& parts = *parts_;
+  const Vec2 tangent = parts.rim_slope;
+  if (parts.rim_moment == 0) return std::nullopt;
+  const double s = std::sqrt(p.x * p.x + p.y * p.y), c = -p.z, size = s + std::abs(c);
+  const double slant = c * tangent.x - s * tangent.y;
+  const bool is_moderate = size > 1e-100 && size < 1e100; // squares neither overflow nor vanish
+  if (!is_moderate || !is_sure(c * tangent.x, -s * tangent.y)) return exact_extended_radius(parts, p);
+  if (parts.rim_moment * slant < 0) return std::nullopt;
+  const double along = parts.rim_moment / slant, r = s * along, rim = parts.rim.point.x;
+  constexpr double margin = 1e-12;
+  if (r < rim * (1 - margin)) return std::nullopt;
+  // A vertical tangent keeps to the rim's radius.
+  if (r < rim * (1 + margin) && tangent.x != 0) return exact_extended_radius(parts, p);
+  if (std::isinf(parts.distance)) return within_reach(parts, r);
+  if (!is_sure(c * along, parts.distance)) return exact_extended_radius(parts, p);
+  const double depth = c * along + parts.distance;
+  return depth > 0 ? within_reach(parts, r * parts.distance / depth) : std::nullopt;
 }
 
 namespace {

@@ -119,7 +119,8 @@ public:
   RadialEnclosure enclose(std::size_t branch, double theta_low, double theta_high) const;
 
   /// The tangent extension beyond r_max in homogeneous form (valid for vertical tangents): image radius for an eye-space
-  /// point whose direction no branch shows, after compensation; nothing for a blind direction. In 113 bits.
+  /// point whose direction no branch shows, after compensation; nothing for a blind direction. In 113 bits where the
+  /// rounding of doubles could decide, else to 1e-13.
   std::optional<double> extended_radius(const Vec3& p) const;
 
   /// The inverse, for rays: sine and cosine of theta of the direction seen at an image radius (corrected Eq. 25

@@ -251,6 +251,14 @@ void build_lens(SurfaceParts& parts, const Limit& picture) {
   parts.rim = {{m.r.r, m.z.r}, {m.r.dr / length, m.z.dr / length}};
 }
 
+void round_rim(SurfaceParts& parts) {
+  const QuadPoint rim = parts.spans.back().high, tangent = parts.rim_tangent;
+  const Quad length = sqrt(tangent.r * tangent.r + tangent.z * tangent.z);
+  if (length == 0) return;
+  parts.rim_slope = {static_cast<double>(tangent.r / length), static_cast<double>(tangent.z / length)};
+  parts.rim_moment = static_cast<double>((rim.z * tangent.r - rim.r * tangent.z) / length);
+}
+
 } // namespace
 
 Surface::Surface(const SurfaceOptions& options, double screen_radius) {
@@ -262,6 +270,7 @@ Surface::Surface(const SurfaceOptions& options, double screen_radius) {
   parts->distance = options.projector.value_or(infinity);
   const Limit picture = picture_limit(options, screen_radius);
   options.lens ? build_lens(*parts, picture) : build_curve(*parts, picture);
+  round_rim(*parts);
   parts_ = parts;
 }
 

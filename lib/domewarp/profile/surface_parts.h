@@ -40,6 +40,8 @@ struct SurfaceParts {
   std::vector<Kink> kinks;
   SurfaceRim rim;
   QuadPoint rim_tangent{0, 0}; ///< the rim's tangent once more, of any length
+  Vec2 rim_slope{0, 0};        ///< the same of length 1; zero at a fold
+  double rim_moment = 0;       ///< cross product of the rim and that: z r' - r z'
 };
 
 /// R and z along the branch, before the projector's compensation, with derivatives in theta.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -213,6 +214,33 @@ TEST(Surface, TheTangentExtensionIsThatOfEquation16) {
     }
   }
   EXPECT_FALSE(surface.extended_radius({0, 0, 1}));
+}
+
+TEST(Surface, TheExtensionIsExactInEveryDirectionAndAtEveryLength) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  for (const std::optional<double> projector : {std::optional<double>(), std::optional<double>(3), std::optional<double>(0.5)}) {
+    SurfaceOptions options = curve_options("1-r^2");
+    options.projector = projector;
+    options.rmax = 0.7;
+    const Surface surface(options, corner);
+    const long double rim = surface.rim().point.x, z = 1 - rim * rim, slope = -2 * rim, d = projector.value_or(0);
+    int extended = 0;
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 p = Vec3(normal(random), normal(random), normal(random)) * std::pow(10.0, i % 3 == 0 ? 100 * normal(random) : 0);
+      const long double s = std::hypot(static_cast<long double>(p.x), static_cast<long double>(p.y)), c = -p.z;
+      const long double slant = c - s * slope, along = (z - rim * slope) / slant, depth = c * along + d;
+      if (std::abs(s * along - rim) < 1e-9L || std::abs(slant) < 1e-4L * s || (projector && std::abs(depth) < 1e-4L)) continue;
+      const auto radius = surface.extended_radius(p);
+      const bool expected = slant > 0 && s * along > rim && (!projector || depth > 0);
+      ASSERT_EQ(radius.has_value(), expected) << p.x << " " << p.y << " " << p.z;
+      if (!expected) continue;
+      const auto image = static_cast<double>(projector ? s * along * d / depth : s * along);
+      EXPECT_NEAR(*radius / image, 1, 1e-13);
+      ++extended;
+    }
+    EXPECT_GT(extended, 1000);
+  }
 }
 
 TEST(Surface, AVerticalTangentExtendsAlongItself) {
