@@ -144,19 +144,31 @@ private:
       inside_source += is_inside(seen_.weights(t, p));
       near_edge = near_edge || !is_inside(seen_.weights(t, p));
     }
-    const std::vector<std::size_t>& hits = warped_.at(p, reach);
-    for (const std::size_t t : hits) {
+    std::size_t hits = 0;
+    for (const std::size_t t : warped_.at(p, reach)) {
+      const Corners& corners = warped_.corners(t);
+      const std::size_t branch = provenance_.branch[corners[0]];
+      if (std::find(expected.begin(), expected.end(), branch) == expected.end() && is_clipped(corners, branch)) continue;
+      ++hits;
       const Vec3 weights = warped_.weights(t, p);
       near_edge = near_edge || !is_inside(weights);
       if (!is_inside(weights)) continue;
       ++inside;
       measure_error(t, weights, p);
     }
-    if (hits.size() < expected.size()) {
+    if (hits < expected.size()) {
       ++report_.lost;
       report_.lost_area_px2 += angle * pixels_per_steradian(picture_, expected.front(), p);
     }
     report_.overlapping += !near_edge && inside > inside_source * expected.size();
+  }
+
+  /// Whether the branch shows the directions of all corners. A triangle that shows what the branch does not then does so
+  /// beside the picture, or because the chords of a rim are straight in space.
+  bool is_clipped(const Corners& corners, std::size_t branch) const {
+    return std::all_of(corners.begin(), corners.end(), [&](std::size_t v) {
+      return inside_angles(picture_.surface.branches()[branch], provenance_.source[v]) >= -boundary_margin;
+    });
   }
 
   void measure_error(std::size_t triangle, const Vec3& weights, const Vec3& p) {

@@ -11,24 +11,21 @@ namespace domewarp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-double view_angle(const Vec3& eye) { return std::atan2(std::hypot(eye.x, eye.y), -eye.z); }
-
-/// Smallest distance of theta from an end of the branch that clips, positive inside.
-double inside_angles(const Branch& branch, double theta) {
-  const double low = branch.theta_low > 0 ? theta - branch.theta_low : pi;
-  const double high = branch.theta_high < pi ? branch.theta_high - theta : pi;
-  return std::min(low, high);
-}
-
-/// The same of an image radius.
+/// Smallest distance of an image radius from an end of the branch, positive inside.
 double inside_radii(const Branch& branch, double radius) {
   const auto [least, largest] = std::minmax(branch.radius_low, branch.radius_high);
   return std::min(least > 0 ? radius - least : 1.0, largest - radius);
 }
 
+double view_angle(const Vec3& eye) { return std::atan2(std::hypot(eye.x, eye.y), -eye.z); }
+
 } // namespace
+
+double inside_angles(const Branch& branch, const Vec3& eye) {
+  constexpr double pi = std::numbers::pi;
+  const double theta = view_angle(eye), low = branch.theta_low > 0 ? theta - branch.theta_low : pi;
+  return std::min(low, branch.theta_high < pi ? branch.theta_high - theta : pi);
+}
 
 Vec3 source_of(const Picture& picture, const Vec3& position) {
   const Vec2 image = drawn_at(position, picture.perspective);
@@ -42,12 +39,12 @@ Vec3 source_of(const Picture& picture, const Vec3& position) {
 bool is_at_boundary(const Picture& picture, std::size_t branch, const Vec3& eye, double margin) {
   const Branch& b = picture.surface.branches()[branch];
   const double radius = glm::length(picture.map.branches[branch].image(eye));
-  return std::abs(inside_angles(b, view_angle(eye))) <= margin || std::abs(inside_radii(b, radius)) <= margin ||
+  return std::abs(inside_angles(b, eye)) <= margin || std::abs(inside_radii(b, radius)) <= margin ||
          std::abs(glm::length(eye) - picture.near) <= margin * picture.near;
 }
 
 bool is_shown(const Picture& picture, std::size_t branch, const Vec3& eye, double margin) {
-  if (inside_angles(picture.surface.branches()[branch], view_angle(eye)) < margin) return false;
+  if (inside_angles(picture.surface.branches()[branch], eye) < margin) return false;
   if (glm::length(eye) < picture.near * (1 + margin)) return false;
   const Vec2 image = picture.map.branches[branch].image(eye);
   return std::abs(image.x) < aspect(picture.raster) - margin && std::abs(image.y) < 1 - margin;

@@ -26,6 +26,9 @@ Vec3 source_of(const Picture& picture, const Vec3& position);
 /// Whether a point is within `margin` (radians, image units, or relative distance) of anything that clips the branch.
 bool is_at_boundary(const Picture& picture, std::size_t branch, const Vec3& eye, double margin);
 
+/// Smallest distance (radians) of a direction from an end of the branch that clips, positive inside.
+double inside_angles(const Branch& branch, const Vec3& eye);
+
 /// Whether a branch shows an eye-space point on the picture, at least `margin` inside of all that clips.
 bool is_shown(const Picture& picture, std::size_t branch, const Vec3& eye, double margin);
 

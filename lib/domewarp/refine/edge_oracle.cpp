@@ -55,6 +55,7 @@ EdgeOracle EdgeOracle::relaxed(double factor) const {
   oracle.options_.tolerance *= factor;
   oracle.options_.face_tolerance *= factor;
   oracle.options_.depth_tolerance *= factor;
+  oracle.options_.turned_thickness *= factor;
   oracle.options_.criterion_length *= factor;
   oracle.rim_angle_ *= factor;
   return oracle;
@@ -74,14 +75,19 @@ MappedPoint EdgeOracle::locate(const Vec3& eye, int on) const {
   return point;
 }
 
+// The middle of a rim's chord may be beyond the rim: not drawn, but what is cut off there then follows the rim more closely.
 std::optional<MappedPoint> EdgeOracle::middle(const MappedPoint& a, const MappedPoint& b) const {
   const Vec3 eye = point_at(a.eye, b.eye, 0.5);
   if (eye == a.eye || eye == b.eye) return std::nullopt;
   int on = -1;
+  bool is_rim = false;
   for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i)
-    if (a.sides[i] == 0 && b.sides[i] == 0) on = i;
+    if (a.sides[i] == 0 && b.sides[i] == 0) {
+      if (region_.boundaries[i].kind == Boundary::Kind::near_sphere) on = i;
+      else is_rim = true;
+    }
   const MappedPoint point = locate(eye, on);
-  if (*std::min_element(point.sides.begin(), point.sides.end()) < 0) return std::nullopt;
+  if (!is_rim && *std::min_element(point.sides.begin(), point.sides.end()) < 0) return std::nullopt;
   return point;
 }
 

@@ -65,6 +65,7 @@ struct OracleOptions {
   Projection projection = Projection::perspective;
   EdgeCriterion criterion = {}; ///< asked when nothing else splits an edge; may be empty
   double criterion_length = 0; ///< edges whose images are not longer are not asked about, image units
+  double turned_thickness = 0; ///< image units: thinner faces may appear turned over
 };
 
 /// Everything decided about an edge is decided here, from its two end points alone, in the order given by `precedes`.
@@ -103,7 +104,7 @@ public:
   /// Whether a face is within its tolerance at four points inside: for faces that no bound can prove good.
   bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const;
 
-  /// The same with every tolerance, and the least length that the criterion is asked about, times `factor`.
+  /// The same with every tolerance, thickness, and the least length that the criterion is asked about, times `factor`.
   EdgeOracle relaxed(double factor) const;
 
   int orientation() const { return map_.branch().orientation; }

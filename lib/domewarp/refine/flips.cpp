@@ -34,8 +34,6 @@ bool is_flipped(const std::array<const MappedPoint*, 3>& corner, const FaceImage
 
 } // namespace
 
-double thinnest_flip(const EdgeOracle& oracle) { return 1e-3 * oracle.options().tolerance; }
-
 bool is_flipped(const std::array<const MappedPoint*, 3>& corner, int orientation, double thickness) {
   return is_flipped(corner, image_of(corner), orientation, thickness);
 }

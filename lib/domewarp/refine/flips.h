@@ -9,9 +9,6 @@
 
 namespace domewarp {
 
-/// Thickness of the image below which a turned face does not matter, image units.
-double thinnest_flip(const EdgeOracle& oracle);
-
 /// Whether a visible face appears turned over.
 bool is_flipped(const std::array<const MappedPoint*, 3>& corner, int orientation, double thickness);
 
@@ -19,7 +16,7 @@ bool is_flipped(const std::array<const MappedPoint*, 3>& corner, int orientation
 /// bends farther than they are thick. They are within the tolerance, but a viewer that culls back faces drops them.
 /// Splitting a side takes three quarters of its bend away.
 /// @param orientation of the branch
-/// @param thickness see thinnest_flip
+/// @param thickness image units: thinner faces may appear turned over (OracleOptions::turned_thickness)
 /// @return edges of mesh.edges, ascending, each once; a function of positions alone, whatever the order of faces
 std::vector<std::uint32_t> sides_of_flipped_faces(const RefinedMesh& mesh, int orientation, double thickness);
 

@@ -232,8 +232,10 @@ int hiding_boundary(const LevelState& state, const RefinedFace& face) {
   for (std::size_t i = 0; i < boundaries.size(); ++i) {
     const auto [low, high] = std::minmax({corner(0).sides[i], corner(1).sides[i], corner(2).sides[i]});
     if (high > 0) continue;
+    if (low < 0) return static_cast<int>(i);
+    // All corners on a cone. Where that opens by 90 degrees, so that its chords lie on it, the face is seen edge-on: drawn.
     const Vec3 centroid = (corner(0).eye + corner(1).eye + corner(2).eye) / 3.0;
-    if (low < 0 || signed_distance(boundaries[i], centroid) < 0) return static_cast<int>(i);
+    if (sides_of(state.oracle.region(), centroid)[i] < 0) return static_cast<int>(i);
   }
   return -1;
 }

@@ -12,7 +12,7 @@ namespace domewarp {
 namespace {
 
 constexpr std::size_t deepest_level = 200; ///< twice what halving a double's range of angles could ever need
-constexpr int most_unflipping_rounds = 12; ///< each takes three quarters of a side's bend away
+constexpr int most_unflipping_rounds = 64; ///< thin faces turn over one after the other; each split takes three quarters of a bend away
 
 /// The limit is reached: what is there is drawn as it is, with the errors it has.
 void finish_early(LevelState& state, std::size_t first_undecided) {
@@ -42,7 +42,7 @@ void settle(LevelState& state, std::size_t decided, std::size_t max_triangles) {
 /// Halves the sides that turn faces over, for all the faces on them. False when there are none.
 bool split_flipped_faces(LevelState& state) {
   RefinedMesh& mesh = state.mesh;
-  const std::vector<std::uint32_t> sides = sides_of_flipped_faces(mesh, state.oracle.orientation(), thinnest_flip(state.oracle));
+  const std::vector<std::uint32_t> sides = sides_of_flipped_faces(mesh, state.oracle.orientation(), state.oracle.options().turned_thickness);
   EdgeSplits splits;
   for (const std::uint32_t e : sides)
     if (const std::optional<MappedPoint> middle = state.oracle.middle(mesh.points[mesh.edges[e].a], mesh.points[mesh.edges[e].b]))

@@ -33,6 +33,38 @@ Interval unite(const Interval& a, const Interval& b) { return {std::min(a.lo, b.
 double width(const Interval& a) { return a.hi - a.lo; }
 double magnitude(const Interval& a) { return std::max(std::abs(a.lo), std::abs(a.hi)); }
 
+/// R over a range of angles within a branch or beyond one of its ends, where it goes on as transform/weight.h says.
+class ContinuedRadius {
+public:
+  ContinuedRadius(const Surface& surface, std::size_t branch)
+      : surface_(surface), branch_(branch), range_(surface.branches()[branch]), slope_low_(slope_beyond(surface, branch, false)),
+        slope_high_(slope_beyond(surface, branch, true)) {}
+
+  RadialEnclosure enclose(double low, double high) const {
+    if (high <= range_.theta_low) return beyond(range_.theta_low, range_.radius_low, slope_low_, low, high);
+    if (low >= range_.theta_high) return beyond(range_.theta_high, range_.radius_high, slope_high_, low, high);
+    RadialEnclosure all = surface_.enclose(branch_, std::max(low, range_.theta_low), std::min(high, range_.theta_high));
+    if (low < range_.theta_low) include(all, beyond(range_.theta_low, range_.radius_low, slope_low_, low, range_.theta_low));
+    if (high > range_.theta_high) include(all, beyond(range_.theta_high, range_.radius_high, slope_high_, range_.theta_high, high));
+    return all;
+  }
+
+private:
+  static RadialEnclosure beyond(double end, double radius, double slope, double low, double high) {
+    const Interval angle = Interval(low, high) - Interval(end), s = sin(angle), c = cos(angle);
+    return {Interval(radius) + Interval(slope) * s, Interval(slope) * c, Interval(-slope) * s};
+  }
+
+  static void include(RadialEnclosure& all, const RadialEnclosure& part) {
+    all = {unite(all.r, part.r), unite(all.dr, part.dr), unite(all.d2r, part.d2r)};
+  }
+
+  const Surface& surface_;
+  std::size_t branch_;
+  const Branch& range_;
+  double slope_low_, slope_high_;
+};
+
 /// Hull of the enclosures over the parts of one cell.
 struct Smooth {
   Interval r{infinity, -infinity}, dr{infinity, -infinity}, d2r{infinity, -infinity};
@@ -41,7 +73,7 @@ struct Smooth {
 
 class CellEncloser {
 public:
-  CellEncloser(const Surface& surface, std::size_t branch) : surface_(surface), branch_(branch) {}
+  explicit CellEncloser(const ContinuedRadius& radius) : radius_(radius) {}
 
   Smooth enclose(double low, double high) {
     sum_ = {};
@@ -63,7 +95,7 @@ private:
   static constexpr double unnoticed_jump = 5e-7;
 
   void add(double low, double high, int depth) {
-    const RadialEnclosure e = surface_.enclose(branch_, low, high);
+    const RadialEnclosure e = radius_.enclose(low, high);
     const bool is_bounded_here = is_bounded(e.d2r) && is_bounded(e.dr);
     const double size = magnitude(e.d2r) + magnitude(e.dr) + magnitude(e.r);
     const bool is_narrow = is_bounded_here && width(e.d2r) <= (depth < 7 ? 0.03 : 0.5) * size;
@@ -84,8 +116,7 @@ private:
       sum_.jump += is_small_jump || high - low <= narrowest ? width(e.dr) : infinity;
   }
 
-  const Surface& surface_;
-  std::size_t branch_;
+  const ContinuedRadius& radius_;
   Smooth sum_;
   int budget_ = 0;
 };
@@ -95,8 +126,8 @@ struct Quotients {
 };
 
 /// B, C and K at one angle off the axis.
-Quotients quotients_at(const Surface& surface, std::size_t branch, double theta) {
-  const RadialEnclosure e = surface.enclose(branch, theta, theta);
+Quotients quotients_at(const ContinuedRadius& radius, double theta) {
+  const RadialEnclosure e = radius.enclose(theta, theta);
   const Interval angle(theta), s = sin(angle), c = cos(angle), s2 = power(s, 2);
   return {(e.dr * s * c - e.r) / s2, (e.dr * s - e.r * c) / s2, e.r / s};
 }
@@ -170,36 +201,61 @@ float rounded_up(double value) {
 
 } // namespace
 
+namespace {
+
+/// Bounds of one range of angles, before they are made rows of the table.
+struct Cell {
+  Interval along, across, twist, slope, factor, weight, weight_slope;
+  double slope_jump = 0, weight_jump = 0;
+};
+
+Cell make_cell(const ContinuedRadius& radius, double mean, double low, double high) {
+  const Smooth smooth = CellEncloser(radius).enclose(low, high);
+  Quotients start;
+  if (low > 0)
+    start = quotients_at(radius, low);
+  else
+    start.factor = radius.enclose(0, 0).dr;
+  const Quotients q = high <= right_angle ? scaled(before_right_angle(smooth, start, low, high), low, high)
+                                          : beyond_right_angle(smooth, start, low, high);
+  const Weights w = weights_of(smooth, mean);
+  return {smooth.d2r, q.across, q.twist, smooth.dr, q.factor, w.g, w.slope, smooth.jump, w.jump};
+}
+
+const Cell unknown{entire(Regularity::unknown), {0}, {0}, {0}, {0}, {1}, {0}, 0, 0};
+
+} // namespace
+
 RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high) {
-  u_low_ = theta_low == 0 ? 0 : index_of(theta_low);
-  const double u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
-  scale_ = cells / (u_high - u_low_);
+  const double u_low = theta_low == 0 ? 0 : index_of(theta_low), u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
+  scale_ = inner_cells / (u_high - u_low);
+  u_start_ = u_low - margin / scale_;
   const double mean = mean_slope(surface, branch);
+  const ContinuedRadius radius(surface, branch);
   slope_jumps_.assign(cells + 1, 0);
   weight_jumps_.assign(cells + 1, 0);
   std::vector<Row> base(cells);
   parallel_each(cells, 8, [&](std::size_t i) {
     constexpr double rounding = 1e-13;
-    const double first = i == 0 ? theta_low : angle_at(u_low_ + static_cast<double>(i) / scale_) - rounding;
-    const double last = i + 1 == cells ? theta_high : angle_at(u_low_ + static_cast<double>(i + 1) / scale_) + rounding;
-    const Smooth cell = CellEncloser(surface, branch).enclose(first, last);
-    Quotients start;
-    if (first > 0)
-      start = quotients_at(surface, branch, first);
-    else
-      start.factor = surface.enclose(branch, 0, 0).dr;
-    const Quotients q = last <= right_angle ? scaled(before_right_angle(cell, start, first, last), first, last)
-                                            : beyond_right_angle(cell, start, first, last);
-    const Weights w = weights_of(cell, mean);
-    const std::array<Interval, quantities> all{cell.d2r, q.across, q.twist, cell.dr, q.factor, w.g, w.slope};
+    const auto start_of = [&](std::size_t cell) {
+      if (cell == margin) return theta_low;
+      if (cell == margin + inner_cells) return theta_high;
+      return angle_at(std::clamp(u_start_ + static_cast<double>(cell) / scale_, 0.0, 1.0));
+    };
+    const double first = std::max(0.0, start_of(i) - (i == margin ? 0 : rounding));
+    const double last = std::min(std::numbers::pi, start_of(i + 1) + (i + 1 == margin + inner_cells ? 0 : rounding));
+    const bool is_outermost = (i == 0 && first > 0) || (i + 1 == cells && last < std::numbers::pi);
+    const bool has_pole = i < margin && first <= 0; // K = R / sin(theta), and R is not 0 there
+    const Cell cell = is_outermost || has_pole ? unknown : make_cell(radius, mean, first, last);
+    const std::array<Interval, quantities> all{cell.along, cell.across, cell.twist, cell.slope, cell.factor, cell.weight, cell.weight_slope};
     for (int k = 0; k < quantities; ++k) {
       base[i][2 * k] = rounded_up(-all[k].lo);
       base[i][2 * k + 1] = rounded_up(all[k].hi);
     }
-    slope_jumps_[i + 1] = cell.jump;
-    weight_jumps_[i + 1] = w.jump;
+    slope_jumps_[i + 1] = cell.slope_jump;
+    weight_jumps_[i + 1] = cell.weight_jump;
   });
-  for (int i = 0; i < cells; ++i) {
+  for (std::size_t i = 0; i < cells; ++i) {
     slope_jumps_[i + 1] += slope_jumps_[i];
     weight_jumps_[i + 1] += weight_jumps_[i];
   }
@@ -214,8 +270,8 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
 }
 
 RadialRange RadialRanges::over(double u_low, double u_high) const {
-  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp((u - u_low_) * scale_, 0.0, cells - 1.0)); };
-  const std::size_t first = cell(u_low), last = cell(u_high);
+  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp((u - u_start_) * scale_, 0.0, cells - 1.0)); };
+  const std::size_t first = cell(u_low), last = std::max(first, cell(u_high)); // rounding may have swapped them
   const std::size_t level = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
   const Row& left = levels_[level][first];
   const Row& right = levels_[level][last + 1 - (std::size_t{1} << level)];

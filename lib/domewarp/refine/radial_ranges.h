@@ -27,21 +27,22 @@ struct RadialRange {
 
 /// Ranges over one branch, from interval enclosures of R, R', R'': certain, not sampled. Cells are equal in the
 /// half-angle index u (transform/radial_table.h), so that a look-up needs no trigonometry; any range costs two of them.
+/// Some more of them beyond each end know how R goes on there (transform/weight.h); farther off nothing has a bound.
 class RadialRanges {
 public:
   RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high);
 
-  /// @param u_low,u_high half-angle indices, in order; clamped to the branch
+  /// @param u_low,u_high half-angle indices, in order; in [0, 1]
   RadialRange over(double u_low, double u_high) const;
 
 private:
-  static constexpr int cells = 1024;
+  static constexpr std::size_t inner_cells = 1024, margin = 64, cells = inner_cells + 2 * margin;
   static constexpr int quantities = 7;
   /// Bounds rounded outwards; -low, so that both halves are maxima. B, C and K grow without bound towards the backward
   /// axis: they are kept times cos^2(theta / 2), cos^2(theta / 2) and cos(theta / 2).
   using Row = std::array<float, 2 * quantities>;
 
-  double u_low_ = 0, scale_ = 0;
+  double u_start_ = 0, scale_ = 0; ///< where the first cell begins, cells per unit
   std::vector<std::vector<Row>> levels_; ///< sparse table: levels_[k][i] covers cells i .. i + 2^k - 1
   std::vector<double> slope_jumps_, weight_jumps_; ///< running sums, cells + 1
 };

@@ -34,7 +34,7 @@ struct Verdict {
 
 class Sieve {
 public:
-  Sieve(const EdgeOracle& oracle, const LevelOptions& options) : oracle_(oracle), options_(options), thickness_(thinnest_flip(oracle)) {
+  Sieve(const EdgeOracle& oracle, const LevelOptions& options) : oracle_(oracle), options_(options), thickness_(oracle.options().turned_thickness) {
     for (std::size_t i = 0; i < oracle.region().boundaries.size(); ++i) {
       const Boundary& boundary = oracle.region().boundaries[i];
       if (boundary.kind == Boundary::Kind::near_sphere) {

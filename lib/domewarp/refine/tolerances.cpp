@@ -14,13 +14,15 @@ constexpr double edge_share = 0.97;
 /// Image coordinates are quotients of two float32 numbers; r_max is at most a few image units.
 constexpr double file_rounding = 0x1p-22;
 
+constexpr double turned_px = 5e-4; ///< half of what the audit calls turned
+
 } // namespace
 
 OracleOptions oracle_options(const RefineOptions& options, const Raster& raster) {
   const double tolerance = options.tolerance_px * pixel_size(raster), edge = edge_share * tolerance;
   OracleOptions oracle{edge, std::max(edge, tolerance - file_rounding), options.depth_tolerance, options.projection, options.criterion,
-                       options.criterion_px * pixel_size(raster)};
-  if (options.subdivision == Subdivision::none) oracle.tolerance = oracle.face_tolerance = oracle.depth_tolerance = 1e30;
+                       options.criterion_px * pixel_size(raster), std::max(turned_px * pixel_size(raster), file_rounding)};
+  if (options.subdivision == Subdivision::none) oracle.tolerance = oracle.face_tolerance = oracle.depth_tolerance = oracle.turned_thickness = 1e30;
   return oracle;
 }
 

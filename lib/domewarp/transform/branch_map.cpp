@@ -38,7 +38,7 @@ struct BranchMap::Impl {
   Vec2 low{0, 1}, high{0, -1}; // sine and cosine of the ends
   double u_low = 0, u_high = 1;
   double least = 0, most = 0; // image radius
-  RadialFactors at_low{}, at_high{};
+  double g_low = 1, g_high = 1, slope_low = 0, slope_high = 0; // at the ends, for what lies beyond
 
   void tabulate() {
     const auto start = std::chrono::steady_clock::now();
@@ -56,9 +56,20 @@ struct BranchMap::Impl {
     const bool from_axis = branch.theta_low == 0, to_back = branch.theta_high >= std::numbers::pi;
     u_low = from_axis ? 0 : half_angle_index(low.x, low.y, 1);
     u_high = to_back ? 1 : half_angle_index(high.x, high.y, 1);
-    const RadialJet first = surface.radial(index, branch.theta_low), last = surface.radial(index, branch.theta_high);
-    at_low = {from_axis ? first.dr : first.r / low.x, weight(first.dr, mean)};
-    at_high = {last.r / high.x, weight(last.dr, mean)};
+    g_low = weight(surface.radial(index, branch.theta_low).dr, mean);
+    g_high = weight(surface.radial(index, branch.theta_high).dr, mean);
+    slope_low = slope_beyond(surface, index, false);
+    slope_high = slope_beyond(surface, index, true);
+  }
+
+  // Beyond an end, and at its very cone.
+  RadialFactors beyond_low(const Polar& p) const {
+    const double short_of = (low.x * p.z - low.y * p.r) / p.rho;
+    return {std::max(branch.radius_low - slope_low * short_of, 0.0) / std::max(p.r / p.rho, smallest_sine), g_low};
+  }
+  RadialFactors beyond_high(const Polar& p) const {
+    const double beyond = (p.r * high.y - p.z * high.x) / p.rho;
+    return {std::max(branch.radius_high + slope_high * beyond, 0.0) / std::max(p.r / p.rho, smallest_sine), g_high};
   }
 
   // R and g of a direction within the branch.
@@ -114,8 +125,8 @@ const TableReport& BranchMap::table() const { return impl_->report; }
 RadialFactors BranchMap::factors(const Vec3& p) const {
   const Polar q = polar(p);
   const double u = half_angle_index(q.r, q.z, q.rho);
-  if (impl_->is_below(u)) return impl_->at_low;
-  if (impl_->is_above(u)) return impl_->at_high;
+  if (impl_->is_below(u)) return impl_->beyond_low(q);
+  if (impl_->is_above(u)) return impl_->beyond_high(q);
   if (impl_->report.used && q.z >= 0) {
     // K = (R / u) (u / s) without a division by r.
     const TableValue value = look_up(impl_->table, u);

@@ -72,8 +72,8 @@ public:
 
   const Branch& branch() const;
 
-  /// @param p eye space (looking along -z), finite and not zero; a direction outside the branch takes the factors
-  ///          of the branch's nearer end.
+  /// @param p eye space (looking along -z), finite and not zero; outside the branch R goes on from its nearer end
+  ///          as slope_beyond (transform/weight.h) says.
   RadialFactors factors(const Vec3& p) const;
 
   /// Image point of p by this branch: (x, y) K / rho, up to rounding; a point straight behind, whose image is a circle,

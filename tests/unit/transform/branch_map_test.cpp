@@ -178,17 +178,19 @@ TEST(BranchMap, InsideTellsOnWhichSideOfEachEnd) {
   }
 }
 
-TEST(BranchMap, BeyondItsEndsItHasTheFactorsOfTheNearerOne) {
+TEST(BranchMap, GoesOnBeyondItsEndsWithTheirSlope) {
   for (const Surface& surface : {curve_surface("1-r^2"), curve_surface("-tanh(r-1)", std::nullopt, 3)})
     for (std::size_t i = 0; i < surface.branches().size(); ++i)
       for (const Method method : {Method::direct, Method::table}) {
         const BranchMap map(surface, i, method);
         const Branch& branch = map.branch();
-        const RadialFactors end = map.factors(towards(3.1, 1));
-        EXPECT_NEAR(end.k, branch.radius_high / std::sin(branch.theta_high), 1e-12);
-        for (const double theta : {branch.theta_high + 1e-9, 2.9, pi})
-          EXPECT_EQ(map.factors(towards(theta, 2)).k, end.k);
-        EXPECT_TRUE(std::isfinite(end.g) && end.g > 0);
+        const auto radius = [&](double theta) { return map.factors(towards(theta, 2)).k * std::sin(theta); };
+        const double slope = branch.fold_high ? 0 : surface.radial(i, branch.theta_high).dr;
+        for (const double beyond : {0.0, 1e-9, 1e-3, 0.1})
+          EXPECT_NEAR(radius(branch.theta_high + beyond), branch.radius_high + slope * std::sin(beyond), branch.fold_high ? 1e-7 : 1e-12);
+        EXPECT_GE(radius(3.1), 0);
+        const double g = map.factors(towards(3.1, 1)).g;
+        EXPECT_TRUE(std::isfinite(g) && g > 0);
       }
 }
 
