@@ -93,6 +93,12 @@ double evaluate(const Curve& curve, double r) {
   return is_patched(curve, r) ? evaluate_patch(*curve.centre, r).v : evaluate(curve.expression, r);
 }
 
+Rounded evaluate_rounded(const Curve& curve, double r) {
+  if (!curve.measured && !is_patched(curve, r)) return evaluate_rounded(curve.expression, r);
+  const Interval enclosed = enclose_jet(curve, Interval(r)).v;
+  return {enclosed.lo, enclosed.hi - enclosed.lo};
+}
+
 Jet<double> differentiate(const Curve& curve, double r) {
   if (curve.measured) return differentiate(*curve.measured, r);
   return is_patched(curve, r) ? evaluate_patch(*curve.centre, r) : differentiate(curve.expression, r);

@@ -30,6 +30,7 @@ Curve make_curve(const std::string& expression);
 Curve make_curve(const std::vector<Vec2>& rows, const std::string& name);
 
 double evaluate(const Curve& curve, double r);
+Rounded evaluate_rounded(const Curve& curve, double r); ///< with a bound of its rounding
 Jet<double> differentiate(const Curve& curve, double r);
 Jet<Quad> differentiate(const Curve& curve, const Quad& r);
 Jet<Interval> enclose_jet(const Curve& curve, const Interval& cell);

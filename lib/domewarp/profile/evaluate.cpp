@@ -14,6 +14,9 @@ Quad constant(const Instruction& instruction, Quad*) { return Quad(instruction.n
 Interval constant(const Instruction& instruction, Interval*) {
   return instruction.rounded ? around(instruction.number) : Interval(instruction.number);
 }
+Rounded constant(const Instruction& instruction, Rounded*) {
+  return {instruction.number, instruction.rounded ? rounded_rules::ulp * std::abs(instruction.number) : 0};
+}
 template <typename T>
 Jet<T> constant(const Instruction& instruction, Jet<T>*) {
   return {constant(instruction, static_cast<T*>(nullptr)), T(0), T(0)};
@@ -24,6 +27,7 @@ template <typename T>
 double exponent(const Instruction& instruction, T*) {
   return instruction.number;
 }
+Rounded exponent(const Instruction& instruction, Rounded* unused) { return constant(instruction, unused); }
 Quad exponent(const Instruction& instruction, Jet<Quad>*) { return constant(instruction, static_cast<Quad*>(nullptr)); }
 
 double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? a + b : std::max(a, b); }
@@ -114,6 +118,8 @@ T run(const Expression& expression, const T& r) {
 } // namespace
 
 double evaluate(const Expression& expression, double r) { return run(expression, r); }
+
+Rounded evaluate_rounded(const Expression& expression, double r) { return run(expression, Rounded{r}); }
 
 Jet<double> differentiate(const Expression& expression, double r) { return run(expression, Jet<double>{r, 1, 0}); }
 

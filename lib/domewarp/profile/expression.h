@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "domewarp/profile/jet.h"
+#include "domewarp/profile/rounded.h"
 
 namespace domewarp {
 
@@ -41,6 +42,8 @@ inline constexpr int expression_depth_limit = 256;
 Expression compile(std::string_view text);
 
 double evaluate(const Expression& expression, double r);
+/// The same with a bound of its rounding.
+Rounded evaluate_rounded(const Expression& expression, double r);
 /// f, f', f''.
 Jet<double> differentiate(const Expression& expression, double r);
 Jet<Quad> differentiate(const Expression& expression, const Quad& r);

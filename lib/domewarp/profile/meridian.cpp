@@ -72,6 +72,32 @@ MeridianJet curve_meridian(const Curve& curve, const Span& span, double theta, c
 
 MeridianJet lens_meridian(const LensForm& lens, double theta) { return {radial(lens, theta), depth(lens, theta)}; }
 
+namespace {
+
+// @param part of the way from the index at r_low to that at r_high
+double guess_radius(const Span& span, double part) {
+  if (span.guesses.empty()) return span.r_low + (span.r_high - span.r_low) * part;
+  // The cubic through the four nearest.
+  const double place = part * Span::guess_cells;
+  const int first = static_cast<int>(std::clamp(place, 1.0, Span::guess_cells - 2.0)) - 1;
+  const double* const r = &span.guesses[static_cast<std::size_t>(first)];
+  const double x = place - first, a = x * (x - 1) / 2, b = (x - 2) * (x - 3) / 2;
+  return b * (r[1] * x - r[0] * (x - 1) / 3) + a * (r[3] * (x - 2) / 3 - r[2] * (x - 3));
+}
+
+} // namespace
+
+void tabulate_guesses(const Curve& curve, Span& span) {
+  std::vector<double> guesses{span.r_low};
+  for (int i = 1; i < Span::guess_cells; ++i) {
+    const double n = span.index_at_low + (span.index_at_high - span.index_at_low) * i / Span::guess_cells;
+    const double o = 1 - n, square = n * n + o * o;
+    guesses.push_back(curve_point(curve, span, 2 * n * o / square, (o - n) * (o + n) / square).x);
+  }
+  guesses.push_back(span.r_high);
+  span.guesses = std::move(guesses);
+}
+
 Vec2 curve_point(const Curve& curve, const Span& span, double s, double c) {
   const double sign = span.orientation;
   if (!((span.z_low * s - span.r_low * c) * sign > 0)) return {span.r_low, span.z_low};
@@ -81,8 +107,7 @@ Vec2 curve_point(const Curve& curve, const Span& span, double s, double c) {
     return ValueAndSlope<double>{f.v * s - r * c, f.d * s - c};
   };
   const double part = (half_angle_index(s, c) - span.index_at_low) / (span.index_at_high - span.index_at_low);
-  const double guess = span.r_low + (span.r_high - span.r_low) * part;
-  const double r = find_root(function, span.r_low, span.r_high, guess, sign);
+  const double r = find_root(function, span.r_low, span.r_high, guess_radius(span, part), sign);
   // Near a vertical tangent f(r) would magnify the rounding of r; the ray knows z as well.
   return {r, s > 0 ? r * c / s : span.z_low};
 }

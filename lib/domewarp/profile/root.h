@@ -29,13 +29,14 @@ template <>
 inline constexpr double root_resolution<double> = 2.3e-16;
 
 /// The root of f in [lo, hi], 0 <= lo < hi: Newton's steps, halving the bracket whenever they leave it or stop
-/// converging, so that no function takes for ever. Ends where rounding stops progress.
+/// converging, so that no function takes for ever. Ends where rounding stops progress, or where the last two steps say
+/// that the next would be far below it: they shrink like squares.
 /// @param sign_at_lo +1 or -1, the sign of f at lo; that at hi is the opposite. @param guess where to start.
 template <typename Function, typename T>
 T find_root(const Function& f, T lo, T hi, const T& guess, double sign_at_lo) {
   using std::abs;
   T x = guess > lo && guess < hi ? guess : middle_of(lo, hi);
-  T step = hi - lo;
+  T step = hi - lo, before = 0; // before: the length of Newton's step before, 0 where it was none
   for (int i = 0; i < 400; ++i) {
     const auto [value, slope] = f(x);
     if (value == 0) return x;
@@ -48,7 +49,11 @@ T find_root(const Function& f, T lo, T hi, const T& guess, double sign_at_lo) {
     }
     step = next - x;
     x = next;
-    if (abs(step) <= root_resolution<T> * abs(x)) return x;
+    const T length = abs(step), resolution = root_resolution<T> * abs(x);
+    if (length <= resolution) return x;
+    const bool shrinks = converges && length < 1e-3 * before;
+    if (shrinks && length * (length / before) * (length / before) <= 1e-3 * resolution) return x;
+    before = converges ? length : T(0);
   }
   return x;
 }

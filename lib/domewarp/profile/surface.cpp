@@ -72,12 +72,12 @@ RadialJet Surface::radial(std::size_t branch, double theta) const {
 namespace {
 
 // Whether rounding moves the root r of F(r) = f(r) s - r c, and its compensated radius, by less than the direct method
-// promises: from the enclosure of f at r, which holds all the rounding there can be.
+// promises.
 bool is_certain(const SurfaceParts& parts, const Vec2& point, double s, double c) {
   constexpr double promise = 4e-14, rounding = 4.5e-16;
-  const Jet<Interval> f = enclose_jet(parts.curve, Interval(point.x));
+  const Rounded f = evaluate_rounded(parts.curve, point.x);
   const double slope = std::abs(differentiate(parts.curve, point.x).d * s - c);
-  const double noise = (f.v.hi - f.v.lo) * s + rounding * (std::abs(f.v.hi) * s + point.x * std::abs(c));
+  const double noise = f.e * s + rounding * (std::abs(f.v) * s + point.x * std::abs(c));
   const double z = std::abs(point.y), d = parts.distance;
   const bool compensates = std::isinf(d) || rounding * (z + d) <= 0.1 * promise * (point.y + d);
   return compensates && noise <= promise * point.x * slope;

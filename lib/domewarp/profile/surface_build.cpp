@@ -142,8 +142,9 @@ std::vector<Kink> describe_kinks(const SurfaceParts& parts, const std::vector<do
 // One branch for each stretch between folds; stretches too short to hold a direction are dropped.
 void add_branches(SurfaceParts& parts, const std::vector<QuadPoint>& ends, const std::vector<double>& kinks) {
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const Span span = make_span(ends[i], ends[i + 1]);
+    Span span = make_span(ends[i], ends[i + 1]);
     if (std::abs(span.theta_at_high - span.theta_at_low) < 1e-12) continue;
+    tabulate_guesses(parts.curve, span);
     Branch branch = make_branch(span, parts.distance);
     const bool inner = i > 0, outer = i + 2 < ends.size() || parts.limit == RadiusLimit::fold;
     branch.fold_low = span.orientation > 0 ? inner : outer;

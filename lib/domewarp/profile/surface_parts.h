@@ -19,6 +19,9 @@ struct Span {
   int orientation = 1;
   QuadPoint low{0, 0}, high{0, 0}; ///< the ends once more
   double index_at_low = 0, index_at_high = 0; ///< their half_angle_index
+  static constexpr int guess_cells = 16;
+  /// r at even steps of the index, where to start looking for r; none at first.
+  std::vector<double> guesses{};
 };
 
 /// tan(theta / 2) mapped to [0, 1], for a direction with sine s and cosine c.
@@ -56,6 +59,8 @@ RadialJet compensate(double distance, const MeridianJet& meridian);
 /// @param point on the curve, at the angle theta.
 MeridianJet curve_meridian(const Curve& curve, const Span& span, double theta, const Vec2& point);
 MeridianJet lens_meridian(const LensForm& lens, double theta);
+
+void tabulate_guesses(const Curve& curve, Span& span);
 
 /// The point (r, z) at which the direction with sine s and cosine c meets the span, its nearer end if it does not.
 Vec2 curve_point(const Curve& curve, const Span& span, double s, double c);

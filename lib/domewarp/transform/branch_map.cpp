@@ -72,6 +72,13 @@ struct BranchMap::Impl {
     return {std::max(branch.radius_high + slope_high * beyond, 0.0) / std::max(p.r / p.rho, smallest_sine), g_high};
   }
 
+  /// R of a direction within the branch.
+  double radius(const Polar& p, double u) const {
+    if (!report.used) return direct_radius(p);
+    const TableValue value = look_up(table, u);
+    return value.fine ? std::clamp(value.ratio * u, least, most) : direct_radius(p);
+  }
+
   // R and g of a direction within the branch.
   struct Values {
     double radius, g;
@@ -142,9 +149,10 @@ Vec2 BranchMap::image(const Vec3& p) const {
   const Polar q = polar(p);
   const double u = half_angle_index(q.r, q.z, q.rho);
   const bool inside = !impl_->is_below(u) && !impl_->is_above(u);
-  if (inside && q.z < 0) {
+  const bool directly = !impl_->report.used && q.r >= smallest_sine * q.rho; // K would take the weight along
+  if (inside && (q.z < 0 || directly)) {
     // K has no bound on the backward axis, which is a circle in the image; its point on the x axis stands for it.
-    return (q.r > 0 ? impl_->values(q, u).radius : impl_->branch.radius_high) * side(q);
+    return (q.r > 0 ? impl_->radius(q, u) : impl_->branch.radius_high) * side(q);
   }
   const double scale = factors(p).k / q.rho;
   return {q.x * scale, q.y * scale};

@@ -83,6 +83,44 @@ TEST(Expression, ValuesAgreeWithSixtyDigits) {
   }
 }
 
+// @return error / bound: more than 1 is wrong
+double rounding_over_bound(const Expression& expression, const Expression& truth, double r) {
+  const Rounded value = evaluate_rounded(expression, r);
+  EXPECT_TRUE(value.v == evaluate(expression, r) || std::isnan(value.v));
+  const Quad exact = differentiate(truth, Quad(r)).v;
+  if (!isfinite(exact) || !std::isfinite(value.v) || !std::isfinite(value.e)) return 0;
+  const double error = static_cast<double>(abs(exact - Quad(value.v)));
+  return error == 0 ? 0 : error / value.e;
+}
+
+TEST(Expression, TheBoundOfItsRoundingHolds) {
+  for (const ReferenceCurve& curve : reference_curves()) {
+    const Expression expression = compile(curve.text);
+    for (int i = 1; i <= 20000; ++i) {
+      const double r = curve.end * i / 20001;
+      ASSERT_LE(rounding_over_bound(expression, expression, r), 1) << curve.text << " at " << r;
+      EXPECT_LT(evaluate_rounded(expression, r).e, 1e-14 * (1 + std::abs(differentiate(expression, r).d))) << curve.text << " at " << r;
+    }
+  }
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0, 2);
+  int finite = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::string text = random_text(random, 1 + i % 4);
+    const Expression expression = compile(text);
+    for (int k = 0; k < 5; ++k) {
+      const double r = uniform(random);
+      ASSERT_LE(rounding_over_bound(expression, expression, r), 1) << text << " at " << r;
+      finite += std::isfinite(evaluate_rounded(expression, r).e);
+    }
+  }
+  EXPECT_GT(finite, 30000);
+}
+
+TEST(Expression, TheBoundOfItsRoundingNoticesALastDigit) {
+  EXPECT_GT(rounding_over_bound(compile("1-1.000000000000002r^2"), compile("1-r^2"), 0.9), 1);
+}
+
 TEST(Expression, DerivativesAgreeWithDifferencesInSixtyDigits) {
   for (const ReferenceCurve& curve : reference_curves()) {
     const Expression expression = compile(curve.text);
