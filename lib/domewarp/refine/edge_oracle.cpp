@@ -86,8 +86,9 @@ std::optional<MappedPoint> EdgeOracle::middle(const MappedPoint& a, const Mapped
       if (region_.boundaries[i].kind == Boundary::Kind::near_sphere) on = i;
       else is_rim = true;
     }
-  const MappedPoint point = locate(eye, on);
+  MappedPoint point = locate(eye, on);
   if (!is_rim && *std::min_element(point.sides.begin(), point.sides.end()) < 0) return std::nullopt;
+  point.asked = std::max(a.asked, b.asked);
   return point;
 }
 
