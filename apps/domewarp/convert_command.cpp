@@ -23,11 +23,13 @@ namespace domewarp {
 
 namespace {
 
+constexpr double default_fps = 30;
+
 struct Arguments {
   std::string input, output, report;
   JobOptions job;
   std::optional<FrameRange> frames;
-  double fps = 30;
+  std::optional<double> fps; ///< default_fps
   bool json = false, quiet = false;
   int threads = 0;
   std::uint64_t max_memory = 0; ///< bytes, 0: no limit
@@ -56,10 +58,11 @@ bool convert_one(const Arguments& arguments, const JobOptions& job, const std::s
 bool convert_frames(const Arguments& arguments, DisplayCache& displays, std::string& json) {
   JobOptions job = arguments.job;
   if (job.read.animation.empty()) throw Error(ErrorCode::usage, "--frames: needs --animation");
+  if (job.read.time != 0) throw Error(ErrorCode::usage, "--time: --frames sets the time of each frame");
   hold_view(arguments.input, job);
   bool kept = true;
   for (std::size_t frame = arguments.frames->first; frame <= arguments.frames->last; ++frame) {
-    job.read.time = static_cast<double>(frame) / arguments.fps;
+    job.read.time = static_cast<double>(frame) / arguments.fps.value_or(default_fps);
     std::string report;
     kept = convert_one(arguments, job, frame_path(arguments.output, frame), displays, report) && kept;
     json += (json.empty() ? "[\n" : ",\n") + report;
@@ -93,6 +96,7 @@ bool convert_within(Arguments arguments, std::string& json) {
 
 int run(const Arguments& arguments) {
   require_surface(arguments.job.convert.surface);
+  if (arguments.fps && !arguments.frames) throw Error(ErrorCode::usage, "--fps: needs --frames");
   const ThreadLimit threads(arguments.threads);
   std::string json;
   const bool kept = arguments.max_memory > 0 ? convert_within(arguments, json) : convert_all(arguments, json);
@@ -112,7 +116,9 @@ void add_convert_command(CLI::App& app, int& status) {
   command->add_option_function<std::string>("--frames", [arguments](const std::string& text) {
            parse_frames("--frames", text, arguments->frames.emplace());
          }, "Write frames FIRST to LAST of the animation, as OUT.0000.glb and so on")->type_name("FIRST:LAST");
-  command->add_option("--fps", arguments->fps, "Frames per second of --frames (default 30)")->check(CLI::PositiveNumber);
+  command->add_option_function<std::string>("--fps", [arguments](const std::string& text) {
+           arguments->fps = parse_positive("--fps", text);
+         }, "Frames per second of --frames (default 30)")->type_name("N");
   command->add_option("--report", arguments->report, "Write the report as JSON")->type_name("FILE.json");
   command->add_option_function<std::string>("--max-memory", [arguments](const std::string& text) {
            arguments->max_memory = parse_memory("--max-memory", text);

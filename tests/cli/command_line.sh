@@ -51,6 +51,9 @@ refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --animation wa
 refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --time 1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 3:1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 0:1
+refuses 1 --fps convert "$scene" -o out.glb --curve '1-r^2' --fps 3
+refuses 1 --fps convert "$scene" -o out.glb --curve '1-r^2' --fps 0 --frames 0:1 --animation 0
+refuses 1 --time convert "$scene" -o out.glb --curve '1-r^2' --time 1 --frames 0:1 --animation 0
 refuses 1 --shard batch "$scene" --out out --lens equidistant --shard 3/2
 refuses 1 --jobs batch "$scene" --out out --lens equidistant --jobs 0
 refuses 1 --max-memory batch "$scene" --out out --lens equidistant --max-memory 1

@@ -65,9 +65,15 @@ check "the same light for 1 and 2 threads" cmp -s one.glb two.glb
 # A limit of memory: refused before it is read, refused on the way, kept.
 convert small.glb $toys --max-memory 1
 same "--max-memory below the program's own" 1 $?
-convert small.glb $toys --max-memory 34
+convert small.glb $toys --max-memory 33
 same "--max-memory below the estimate" 3 $?
 check "the need is told" grep -q 'toys.glb: needs' stderr
+convert small.glb $lit --max-memory 100
+same "--max-memory below what the rays need" 3 $?
+check "the need of the rays is told" grep -q 'toys.glb: needs about 14[0-9] MiB' stderr
+(ulimit -d 120000; convert small.glb $lit)
+same "no memory for Embree" 3 $?
+check "it says so" grep -q 'not enough memory' stderr
 check "nothing is written" [ ! -e small.glb ]
 convert small.glb $toys --tolerance 0.002 --max-memory 64
 same "memory that runs out on the way" 3 $?

@@ -187,13 +187,15 @@ private:
   /// What remains to be done; scenes that cannot fit are refused here.
   std::vector<Scheduler::Task> make_tasks() {
     std::vector<Scheduler::Task> tasks;
-    for (std::size_t i = 0; i < items_.size(); ++i) {
-      if (report_.rows[i].up_to_date) continue;
-      const FileSurvey survey = survey_file(items_[i].input, items_[i].options->read.allow_external);
-      const double memory = estimate_memory(survey, items_[i].options->convert);
-      total_bytes_ += survey.file_bytes;
-      tasks.push_back({i, survey.file_bytes, memory, false});
-    }
+    for (std::size_t i = 0; i < items_.size(); ++i)
+      if (!report_.rows[i].up_to_date) tasks.push_back({i, 0, 0, false});
+    parallel_each(tasks.size(), 1, [&](std::size_t i) {
+      const BatchItem& item = items_[tasks[i].item];
+      const FileSurvey survey = survey_file(item.input, item.options->read.allow_external);
+      tasks[i].bytes = survey.file_bytes;
+      tasks[i].memory = estimate_memory(survey, item.options->convert);
+    });
+    for (const Scheduler::Task& task : tasks) total_bytes_ += task.bytes;
     std::erase_if(tasks, [&](const Scheduler::Task& task) {
       const std::string why = memory_refusal(task.memory, options_.max_memory);
       if (why.empty()) return false;

@@ -11,6 +11,9 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
   tell(progress, "read");
   Scene scene = read_scene(input, options.read);
   if (!scene.extras.empty()) scene.warnings.push_back("is warped already, and is warped once more");
+  if (scene.animations > 0 && options.read.animation.empty())
+    scene.warnings.push_back("shows the rest pose and not its " + std::to_string(scene.animations) +
+                             " animation(s): --animation poses the scene, --frames writes every frame");
   ConvertReport report;
   Scene warped;
   if (displays != nullptr) {

@@ -59,6 +59,7 @@ class SceneReader {
     check_animations(document_, budget_, scene_.warnings);
     if (!options.animation.empty())
       apply_animation(options.animation, options.time, document_, budget_, scene_.warnings);
+    scene_.animations = document_.animations.size();
     parents_ = find_parents(document_.nodes);
     world_ = world_matrices(document_.nodes, parents_);
   }

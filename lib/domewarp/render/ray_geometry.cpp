@@ -157,15 +157,6 @@ void RayGeometry::Impl::fill(float* vertices, unsigned* indices) const {
   });
 }
 
-namespace {
-
-[[noreturn]] void fail(RTCDevice device, const char* what) {
-  throw Error(ErrorCode::output, std::string("Embree: ") + what + " (error " +
-                                     std::to_string(static_cast<int>(rtcGetDeviceError(device))) + ")");
-}
-
-} // namespace
-
 RayGeometry::RayGeometry(const Parts& parts, const View& view, const std::string& embree)
     : impl_(std::make_unique<Impl>()) {
   impl_->parts = &parts;
@@ -263,7 +254,8 @@ void RayGeometry::Impl::attach_triangles() {
 
 void RayGeometry::Impl::commit(const std::string& embree) {
   device.reset(rtcNewDevice(embree.empty() ? nullptr : embree.c_str()));
-  if (!device) fail(nullptr, "cannot be started");
+  if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (!device) throw Error(ErrorCode::output, "Embree: cannot be started");
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   if (!part_of.empty()) attach_triangles();

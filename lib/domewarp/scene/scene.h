@@ -127,6 +127,7 @@ struct Scene {
   std::vector<Image> images;
   std::vector<Sampler> samplers;
   std::string copyright;         ///< asset.copyright
+  std::size_t animations = 0;    ///< of the source file, of which the scene shows one moment
   std::string extras;            ///< asset.extras.domewarp as JSON text, empty when absent
   std::vector<std::string> dropped_extensions; ///< named in the source file, neither understood nor carried through
   std::vector<std::string> warnings;           ///< one sentence each

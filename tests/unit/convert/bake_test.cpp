@@ -159,6 +159,19 @@ TEST(Bake, ShadowsNeedBaking) {
   EXPECT_THROW(convert(lit_floor(), options, report), Error);
 }
 
+TEST(Bake, RefusesACriterionWithoutAnEnd) {
+  ConvertOptions options = baking();
+  options.refine.criterion_px = 0;
+  ConvertReport report;
+  try {
+    convert(lit_floor(), options, report);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_THAT(error.what(), HasSubstr("criterion_px"));
+  }
+}
+
 TEST(Bake, LightsASceneWithoutLightsFromTheEye) {
   Scene scene = lit_floor();
   scene.lights.clear();

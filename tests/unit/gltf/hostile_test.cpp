@@ -126,8 +126,16 @@ TEST(Hostile, RefusesMatricesThatAreNotAffineOrOverflow) {
     file.root["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   });
   expect_refusal("overflows", [](GltfFile& file) {
-    file.root["nodes"] = {{{"scale", {1e300, 1, 1}}, {"children", {1}}}, {{"scale", {1e300, 1, 1}}, {"mesh", 0}}};
+    file.root["nodes"] = {{{"scale", {1e30, 1, 1}}, {"children", {1}}}, {{"scale", {1e300, 1, 1}}, {"mesh", 0}}};
   });
+}
+
+TEST(Hostile, RefusesNodesBeyondSinglePrecision) {
+  const auto scaled_by = [](double scale) {
+    return [scale](GltfFile& file) { file.root["nodes"][0]["scale"] = {1, scale, 1}; };
+  };
+  expect_refusal("beyond what single precision holds", scaled_by(1e200));
+  EXPECT_EQ(after(scaled_by(1e30)), "");
 }
 
 TEST(Hostile, RefusesIndicesOutOfRangeAndRestarts) {
@@ -151,6 +159,14 @@ TEST(Hostile, RefusesSparseIndicesOutOfRange) {
     file.root["accessors"][0]["sparse"] = {{"count", 1},
                                            {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
                                            {"values", {{"bufferView", values}}}};
+  });
+}
+
+TEST(Hostile, TellsSparseCountsAsTheyAre) {
+  expect_refusal("sparse: replaces 2147483648 elements, too many", [](GltfFile& file) {
+    file.root["accessors"][0]["sparse"] = {{"count", 2147483648u},
+                                           {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
+                                           {"values", {{"bufferView", 0}}}};
   });
 }
 
