@@ -11,6 +11,7 @@
 #include "benches.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
+#include "domewarp/core/memory.h"
 #include "machine.h"
 
 namespace domewarp::bench {
@@ -79,6 +80,7 @@ void add_command(CLI::App& app, const Bench& bench, Arguments& arguments) {
 } // namespace domewarp::bench
 
 int main(int argc, char** argv) {
+  domewarp::keep_free_memory(); // as domewarp itself
   CLI::App app{"Measures domewarp: figures are ratios within one run on the machine named beside them.", "domewarp-bench"};
   app.require_subcommand(1);
   domewarp::bench::Arguments arguments;

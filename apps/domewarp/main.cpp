@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "domewarp/core/errors.h"
+#include "domewarp/core/memory.h"
 
 namespace {
 
@@ -36,6 +37,7 @@ std::vector<std::string> join_values(const CLI::App& app, int argc, char** argv)
 } // namespace
 
 int main(int argc, char** argv) {
+  domewarp::keep_free_memory();
   CLI::App app{"Pre-warped geometry for domes, fisheyes and panoramas: glTF in, glTF out.", "domewarp"};
   app.set_version_flag("--version", std::string("domewarp ") + DOMEWARP_VERSION);
   app.require_subcommand(1);

@@ -12,7 +12,7 @@ function(public_headers room)
     ARCHIVE COMPONENT development LIBRARY COMPONENT program NAMELINK_COMPONENT development)
 endfunction()
 
-public_headers(core errors.h files.h memory.h parallel.h progress.h vectors.h)
+public_headers(core errors.h files.h memory.h parallel.h progress.h raw_vector.h vectors.h)
 public_headers(profile interval.h plot.h surface.h)
 public_headers(transform batch.h image_map.h)
 public_headers(mesh t_junctions.h topology.h weld.h)

@@ -30,6 +30,11 @@ void limit_memory(std::uint64_t bytes) {
   if (setrlimit(RLIMIT_DATA, &limit) != 0) refuse(std::string("cannot be set: ") + std::strerror(errno));
 }
 
+void keep_free_memory() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
+}
+
 void release_free_memory() { malloc_trim(0); }
 
 } // namespace domewarp

@@ -41,6 +41,10 @@ Elements find_elements(const Document& document, int view, std::size_t offset, s
   return {bytes.data() + offset, stride};
 }
 
+std::size_t element_size(const Accessor& accessor, std::size_t size) {
+  return column_stride(accessor, size) * static_cast<std::size_t>(accessor.columns);
+}
+
 template <typename T>
 double load(const std::uint8_t* data) {
   T value;
@@ -109,7 +113,7 @@ template <typename Store>
 void each_value(const Document& document, const Accessor& accessor, const std::string& place, Budget& budget,
                 Store&& store) {
   const std::size_t size = component_size(accessor.component_type, place);
-  const std::size_t element = column_stride(accessor, size) * static_cast<std::size_t>(accessor.columns);
+  const std::size_t element = element_size(accessor, size);
   if (accessor.view >= 0 && accessor.count > 0)
     each_component(accessor,
                    find_elements(document, accessor.view, accessor.offset, accessor.count, element, true, place),
@@ -121,6 +125,20 @@ void each_value(const Document& document, const Accessor& accessor, const std::s
                                         targets.size(), element, false, here);
   each_component(accessor, values, targets.size(),
                  [&](std::size_t i, std::size_t c, double value) { store(targets[i], c, value); });
+}
+
+/// Copies elements whose bytes need no conversion. @return whether they are such, of components of `type`
+template <typename T>
+bool copy_elements(const Document& document, const Accessor& accessor, int type, const std::string& place, std::vector<T>& values) {
+  if (accessor.component_type != type || accessor.view < 0 || accessor.count == 0 || is_sparse(accessor)) return false;
+  const std::size_t size = element_size(accessor, sizeof(T));
+  const Elements elements = find_elements(document, accessor.view, accessor.offset, accessor.count, size, true, place);
+  auto* out = reinterpret_cast<std::uint8_t*>(values.data());
+  if (elements.stride == size)
+    std::memcpy(out, elements.data, accessor.count * size);
+  else
+    for (std::size_t i = 0; i < accessor.count; ++i) std::memcpy(out + i * size, elements.data + i * elements.stride, size);
+  return true;
 }
 
 /// Data bound the count of an accessor that has some. One of zeros is bounded here, as text alone could ask for
@@ -177,6 +195,7 @@ std::vector<float> read_floats(const Document& document, int index, Budget& budg
   if (accessor.view >= 0 && accessor.count > view_bytes(document, accessor.view, place).size())
     refuse(place, "has " + std::to_string(accessor.count) + " elements, more than its bufferView has bytes");
   std::vector<float> values(accessor.count * components);
+  if (copy_elements(document, accessor, float_type, place, values)) return values;
   each_value(document, accessor, place, budget, [&](std::size_t i, std::size_t c, double value) {
     values[i * components + c] = static_cast<float>(dequantised(value, accessor));
   });
@@ -195,6 +214,7 @@ std::vector<std::uint32_t> read_naturals(const Document& document, int index, Bu
     refuse(place, "has " + std::to_string(accessor.count) + " elements, more than its bufferView has bytes");
   budget.charge(accessor.count, components * sizeof(std::uint32_t), place);
   std::vector<std::uint32_t> values(accessor.count * components);
+  if (copy_elements(document, accessor, uint32_type, place, values)) return values;
   each_value(document, accessor, place, budget, [&](std::size_t i, std::size_t c, double value) {
     values[i * components + c] = static_cast<std::uint32_t>(value);
   });
@@ -268,11 +288,15 @@ void check_accessor(const Document& document, const Accessor& accessor, const st
   if (accessor.count == 0 || (accessor.view < 0 && !is_sparse(accessor))) return;
   check_count(accessor, place);
   const std::size_t stride = accessor.view < 0 ? 0 : document.views[static_cast<std::size_t>(accessor.view)].stride;
-  if (stride > 0 && stride < column_stride(accessor, size) * static_cast<std::size_t>(accessor.columns))
+  if (stride > 0 && stride < element_size(accessor, size))
     refuse(place, "has elements larger than the byteStride " + std::to_string(stride));
   if (accessor.view >= 0 &&
       (accessor.offset + document.views[static_cast<std::size_t>(accessor.view)].offset) % size != 0)
     warnings.push_back(place + ": is not aligned to its components");
+  if (accessor.low.empty() && accessor.high.empty() && !is_sparse(accessor)) {
+    find_elements(document, accessor.view, accessor.offset, accessor.count, element_size(accessor, size), true, place);
+    return;
+  }
   if (is_sparse(accessor))
     budget.charge(accessor.count, sizeof(double) * static_cast<std::size_t>(accessor.components()), place);
   const Bounds bounds = true_bounds(document, accessor, place, budget);

@@ -50,18 +50,28 @@ std::vector<std::uint8_t> load_uri(const std::string& uri, const Source& source,
   return std::move(data->bytes);
 }
 
-/// The BIN chunk of a GLB is the first buffer, unless that has a URI.
-bool is_binary_chunk(const json& buffer, std::size_t index, const Source& source) {
-  return index == 0 && source.has_binary && !buffer.contains("uri");
+void check_length(std::size_t found, std::size_t length, const std::string& place) {
+  if (found < length) refuse(place, "has " + size_text(found) + " of the " + size_text(length) + " it should have");
 }
 
 } // namespace
+
+bool is_binary_chunk(const json& root, std::size_t index, const Source& source) {
+  return index == 0 && source.has_binary && !root.at("buffers").at(0).contains("uri");
+}
+
+void cut_binary_chunk(const json& root, const Source& source, std::vector<std::uint8_t>& file) {
+  const std::size_t length = byte_length(root.at("buffers").at(0));
+  check_length(source.binary.size(), length, at("buffers", 0));
+  file.erase(file.begin(), file.begin() + (source.binary.data() - file.data()));
+  file.resize(length);
+}
 
 std::vector<std::size_t> buffer_sizes(const json& root, const Source& source, std::vector<std::string>& warnings) {
   std::vector<std::size_t> sizes;
   if (!root.contains("buffers")) return sizes;
   for (const json& buffer : root.at("buffers")) {
-    const bool has_bytes = buffer.contains("uri") || is_binary_chunk(buffer, sizes.size(), source);
+    const bool has_bytes = buffer.contains("uri") || is_binary_chunk(root, sizes.size(), source);
     sizes.push_back(has_bytes ? byte_length(buffer) : 0);
     if (byte_length(buffer) == 0) warnings.push_back(at("buffers", sizes.size() - 1) + ": has byteLength 0");
   }
@@ -73,16 +83,9 @@ std::vector<std::uint8_t> load_buffer(const json& root, std::size_t index, const
   const std::string place = at("buffers", index);
   const std::size_t length = byte_length(buffer);
   std::vector<std::uint8_t> bytes;
-  if (is_binary_chunk(buffer, index, source)) {
-    budget.charge(source.binary.size(), 1, place);
-    bytes.assign(source.binary.begin(), source.binary.end());
-  } else if (buffer.contains("uri")) {
-    bytes = load_uri(buffer.at("uri"), source, budget, place);
-  } else {
-    return {0};
-  }
-  if (bytes.size() < length)
-    refuse(place, "has " + size_text(bytes.size()) + " of the " + size_text(length) + " it should have");
+  if (!buffer.contains("uri")) return {0};
+  bytes = load_uri(buffer.at("uri"), source, budget, place);
+  check_length(bytes.size(), length, place);
   bytes.resize(length);
   return length > 0 ? bytes : std::vector<std::uint8_t>{0};
 }

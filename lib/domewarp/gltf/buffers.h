@@ -23,7 +23,14 @@ struct Source {
 std::vector<std::size_t> buffer_sizes(const nlohmann::json& root, const Source& source,
                                       std::vector<std::string>& warnings);
 
-/// The first byteLength bytes of a buffer, from the GLB, a data URI or a file.
+/// The BIN chunk of a GLB is the first buffer, unless that has a URI.
+bool is_binary_chunk(const nlohmann::json& root, std::size_t index, const Source& source);
+
+/// Makes the bytes of a GLB the first byteLength of its BIN chunk, which they hold.
+/// @throws Error(input) when there are fewer
+void cut_binary_chunk(const nlohmann::json& root, const Source& source, std::vector<std::uint8_t>& file);
+
+/// The first byteLength bytes of a buffer from a data URI or a file.
 /// @throws Error(input) when there are fewer, or its URI is refused.
 std::vector<std::uint8_t> load_buffer(const nlohmann::json& root, std::size_t index, const Source& source,
                                       Budget& budget);

@@ -78,14 +78,21 @@ void check_strides(const json& root) {
   }
 }
 
-void load_structs(const json& root, const Source& source, const std::vector<std::size_t>& sizes, Document& document,
-                  Budget& budget) {
+/// @param file the bytes that `source` refers to; they become the first buffer where they hold it
+void load_structs(const json& root, const Source& source, const std::vector<std::size_t>& sizes, std::vector<std::uint8_t> file,
+                  Document& document, Budget& budget) {
+  const bool has_binary = !sizes.empty() && is_binary_chunk(root, 0, source);
+  std::vector<std::size_t> loaded = sizes;
+  if (has_binary) loaded[0] = 0;
   Blobs blobs;
   blobs.buffer = [&](std::size_t i) { return load_buffer(root, i, source, budget); };
   blobs.image = [&](std::size_t i) { return load_image(root, i, source, budget, document.scene.warnings); };
-  load_tiny(lean_json(root, sizes).dump(), blobs, document);
-  for (std::size_t i = 0; i < sizes.size(); ++i)
-    if (sizes[i] == 0) document.buffers[i].clear();
+  load_tiny(lean_json(root, loaded).dump(), blobs, document);
+  for (std::size_t i = 0; i < loaded.size(); ++i)
+    if (loaded[i] == 0) document.buffers[i].clear();
+  if (!has_binary) return;
+  cut_binary_chunk(root, source, file);
+  document.buffers[0] = std::move(file);
 }
 
 void read_asset(const json& asset, Scene& scene) {
@@ -101,7 +108,7 @@ Document read_document(const std::filesystem::path& path, const ReadOptions& opt
   std::error_code status;
   const std::uintmax_t size = std::filesystem::file_size(path, status);
   if (!status) budget.charge(static_cast<std::size_t>(size), 1, "file");
-  const std::vector<std::uint8_t> bytes = read_file(path);
+  std::vector<std::uint8_t> bytes = read_file(path);
   Document document;
   const Container container = split_container(bytes, document.scene.warnings);
   const json root = parse_json(container.json, budget);
@@ -112,7 +119,7 @@ Document read_document(const std::filesystem::path& path, const ReadOptions& opt
   const Source source{path.parent_path().empty() ? "." : path.parent_path(), options.allow_external, container.binary,
                       container.has_binary};
   const std::vector<std::size_t> sizes = buffer_sizes(root, source, document.scene.warnings);
-  load_structs(root, source, sizes, document, budget);
+  load_structs(root, source, sizes, std::move(bytes), document, budget);
   document.quantization_required = is_required(root, "KHR_mesh_quantization");
   document.scene.lights = read_lights(root, document.scene.warnings);
   read_extensions(root, document);

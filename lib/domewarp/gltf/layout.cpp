@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/errors.h"
+#include "domewarp/core/parallel.h"
 #include "domewarp/gltf/topology.h"
 
 namespace domewarp::gltf {
@@ -33,22 +34,24 @@ Vec3 direction_at(const Attribute& attribute, std::size_t vertex) {
 /// Leaves alone what float32 can call unit, so that writing what was read changes nothing.
 void normalise(Attribute& attribute) {
   const auto components = static_cast<std::size_t>(attribute.components);
-  for (std::size_t i = 0; i < attribute.values.size() / components; ++i) {
+  parallel_each(attribute.values.size() / components, 4096, [&](std::size_t i) {
     const Vec3 direction = direction_at(attribute, i);
     const double length = glm::length(direction);
     if (components == 4) attribute.values[i * components + 3] = attribute.values[i * components + 3] < 0 ? -1.0f : 1.0f;
-    if (std::abs(length - 1) <= 1e-6) continue;
+    if (std::abs(length - 1) <= 1e-6) return;
     const Vec3 unit = length > 0 && std::isfinite(length) ? direction / length : Vec3(0, 0, 1);
     for (std::size_t c = 0; c < 3; ++c)
       attribute.values[i * components + c] = static_cast<float>(unit[static_cast<int>(c)]);
-  }
+  });
 }
 
 void make_finite(Attribute& attribute) {
-  for (float& value : attribute.values) {
+  const bool is_color = attribute.name.starts_with("COLOR_");
+  parallel_each(attribute.values.size(), 16384, [&](std::size_t i) {
+    float& value = attribute.values[i];
     if (!std::isfinite(value)) value = 0;
-    if (attribute.name.starts_with("COLOR_")) value = std::clamp(value, 0.0f, 1.0f);
-  }
+    if (is_color) value = std::clamp(value, 0.0f, 1.0f);
+  });
 }
 
 /// Whether a stream is smaller, with what the document says of it.
@@ -188,7 +191,7 @@ int add_indices(Layout& layout, const std::vector<std::uint32_t>& indices, bool 
     if (const int compressed = add_compressed_indices(layout, indices, are_triangles, largest); compressed >= 0) return compressed;
   if (largest < 0xFF) return add_indices_as<std::uint8_t>(layout, indices, uint8_type);
   if (largest < 0xFFFF) return add_indices_as<std::uint16_t>(layout, indices, uint16_type);
-  return add_indices_as<std::uint32_t>(layout, indices, uint32_type);
+  return layout.add_accessor({layout.add_view(bytes_of(indices), index_target), indices.size(), uint32_type, "SCALAR", false, {}, {}});
 }
 
 /// Integers in elements that are padded to a multiple of four bytes.
@@ -283,8 +286,12 @@ WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int 
   WrittenPrimitive written;
   written.material = primitive.material;
   written.mode = primitive.topology == Topology::points ? 0 : primitive.topology == Topology::lines ? 1 : 4;
-  std::vector<std::uint32_t> indices = primitive.indices;
-  if (mirrored) reverse_triangles(indices, primitive.topology);
+  std::vector<std::uint32_t> reversed;
+  if (mirrored) {
+    reversed = primitive.indices;
+    reverse_triangles(reversed, primitive.topology);
+  }
+  const std::vector<std::uint32_t>& indices = mirrored ? reversed : primitive.indices;
   const std::vector<Attribute> attributes = writable_attributes(primitive);
   std::size_t vertices = primitive.positions.size();
   if (packing == Packing::draco && can_compress(indices, primitive.topology)) {
@@ -292,8 +299,9 @@ WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int 
     vertices = layout.accessors[static_cast<std::size_t>(written.attributes.front().second)].count;
   } else {
     const bool quantized = packing == Packing::quantized;
-    std::vector<Vec3f> positions = primitive.positions;
-    if (packing == Packing::draco) positions = snap_to_draco_grid(std::move(positions), grid);
+    std::vector<Vec3f> snapped;
+    if (packing == Packing::draco) snapped = snap_to_draco_grid(primitive.positions, grid);
+    const std::vector<Vec3f>& positions = packing == Packing::draco ? snapped : primitive.positions;
     written.attributes.emplace_back("POSITION", quantized ? add_grid_positions(layout, positions, grid)
                                                           : add_positions(layout, positions));
     for (const Attribute& attribute : attributes)

@@ -202,6 +202,7 @@ class PrimitiveReader {
 
   void check_indices(const std::vector<std::uint32_t>& indices, std::size_t size) const {
     const std::uint32_t restart = size == 4 ? 0xFFFFFFFFu : size == 2 ? 0xFFFFu : 0xFFu;
+    if (indices.empty() || *std::max_element(indices.begin(), indices.end()) < std::min<std::size_t>(count_, restart)) return;
     for (std::size_t i = 0; i < indices.size(); ++i) {
       if (indices[i] == restart)
         refuse(place_ + ".indices", "restart a primitive at " + std::to_string(i) + ", which glTF does not allow");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
+#include "domewarp/core/parallel.h"
 #include "domewarp/gltf/primitives.h"
 
 namespace domewarp::gltf {
@@ -46,18 +48,26 @@ struct Count {
 template <typename Fallback>
 Count make_unit(Attribute& attribute, Fallback&& fallback) {
   constexpr double tolerance = 0.00674, float_tolerance = 1e-6;
-  Count count;
-  for (std::size_t i = 0; i < attribute.values.size() / static_cast<std::size_t>(attribute.components); ++i) {
-    const Vec3 vector = vector_at(attribute, i);
-    const double length = glm::length(vector);
-    if (length > 0 && std::isfinite(length)) {
-      count.not_unit += std::abs(length - 1) > tolerance;
+  std::atomic<std::size_t> not_unit = 0;
+  std::vector<std::uint8_t> has_none(attribute.values.size() / static_cast<std::size_t>(attribute.components), 0);
+  parallel_ranges(has_none.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 vector = vector_at(attribute, i);
+      const double length = glm::length(vector);
+      has_none[i] = !(length > 0 && std::isfinite(length));
+      if (has_none[i]) continue;
+      here += std::abs(length - 1) > tolerance;
       if (std::abs(length - 1) > float_tolerance) store(attribute, i, vector / length);
-    } else {
+    }
+    not_unit += here;
+  });
+  Count count{not_unit, 0};
+  for (std::size_t i = 0; i < has_none.size(); ++i)
+    if (has_none[i]) {
       ++count.without_direction;
       store(attribute, i, fallback(i));
     }
-  }
   return count;
 }
 

@@ -77,7 +77,7 @@ void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, c
 // The lower id counts a pair, and the higher one where it alone reaches the other.
 std::size_t count_near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach) {
   std::atomic<std::size_t> pairs = 0;
-  parallel_ranges(tree.ids().size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(tree.ids().size(), 128, [&](std::size_t begin, std::size_t end) {
     std::size_t here = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t own = tree.ids()[i];

@@ -43,7 +43,7 @@ void find_on_edge(const PointTree& candidates, const MeshTopology::Edge& edge, s
 
 std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const MeshTopology& topology, double tolerance) {
   const PointTree candidates(points, ends_of_open_edges(topology));
-  constexpr std::size_t block_size = 4096;
+  constexpr std::size_t block_size = 128;
   std::vector<std::vector<TJunction>> blocks((topology.edges.size() + block_size - 1) / block_size);
   parallel_each(blocks.size(), 1, [&](std::size_t block) {
     const std::size_t end = std::min(topology.edges.size(), (block + 1) * block_size);

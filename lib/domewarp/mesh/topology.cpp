@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/raw_vector.h"
 
 namespace domewarp {
 
@@ -31,7 +32,7 @@ std::pair<std::uint32_t, std::uint32_t> ends(const Triangle& t, std::size_t corn
 /// Sides sorted by lower point, higher point, then triangle; `begin[p]` is the first of lower point p.
 struct SortedSides {
   std::vector<std::uint32_t> begin;
-  std::vector<Side> sides;
+  RawVector<Side> sides;
 };
 
 SortedSides sort_sides(std::uint32_t point_count, std::span<const Triangle> triangles) {

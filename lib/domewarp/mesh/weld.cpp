@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/raw_vector.h"
 #include "domewarp/mesh/point_tree.h"
 
 namespace domewarp {
@@ -52,13 +53,13 @@ void parallel_blocks(std::size_t count, Body&& body) {
 
 /// The input, dealt to partitions by hash; within each in the order of the input.
 struct Dealt {
-  std::vector<Hashed> items;
+  RawVector<Hashed> items;
   std::array<std::size_t, partitions + 1> begin{};
 };
 
 Dealt deal(std::span<const Vec3> positions) {
   const std::size_t blocks = (positions.size() + block_size - 1) / block_size;
-  std::vector<std::uint64_t> hashes(positions.size());
+  RawVector<std::uint64_t> hashes(positions.size());
   std::vector<std::array<std::size_t, partitions>> slot(blocks);
   parallel_blocks(positions.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     slot[block].fill(0);
@@ -101,7 +102,7 @@ void find_first(std::span<const Vec3> positions, std::span<const Hashed> items, 
 /// Numbers the distinct positions in order of first appearance; `first` becomes point ids.
 void number(std::span<const Vec3> positions, Weld& weld) {
   std::vector<std::uint32_t>& first = weld.point_of;
-  std::vector<std::uint32_t> ids(positions.size());
+  RawVector<std::uint32_t> ids(positions.size());
   std::vector<std::size_t> before((positions.size() + block_size - 1) / block_size + 1, 0);
   parallel_blocks(positions.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) before[block + 1] += first[i] == i;

@@ -21,7 +21,7 @@ constexpr DrawnFace no_face = 0xffffffff;
 
 /// The faces to draw in the order of the source, and where those of each part begin.
 struct DrawnFaces {
-  std::vector<DrawnFace> faces;
+  RawVector<DrawnFace> faces;
   std::vector<std::size_t> begin;
 };
 

@@ -153,7 +153,7 @@ RefinedMesh subdivide_isotropic(const Soup& soup, const Surface& surface, const 
   std::vector<MappedPoint> base(soup.points.size());
   parallel_each(base.size(), 4096, [&](std::size_t i) { base[i] = transform(soup.points[i]); });
   RefinedMesh mesh;
-  mesh.points = base;
+  mesh.points.assign(base.begin(), base.end());
   const std::size_t blocks = (soup.faces.size() + block_size - 1) / block_size;
   std::vector<Recursion> recursions(blocks, Recursion(soup, base, transform, options, max_triangles / std::max<std::size_t>(blocks, 1) + 1));
   parallel_each(blocks, 1, [&](std::size_t block) {

@@ -36,7 +36,7 @@ void add_source_edges(LevelState& state, const SiftedFaces& sifted) {
   const Soup& soup = state.soup;
   RefinedMesh& mesh = state.mesh;
   const std::size_t count = sifted.refine.size();
-  std::vector<Triangle> triangles(count);
+  RawVector<Triangle> triangles(count);
   parallel_each(count, level_block, [&](std::size_t i) { triangles[i] = soup.faces[sifted.refine[i]].point; });
   const MeshTopology topology = build_topology(static_cast<std::uint32_t>(soup.points.size()), triangles);
   mesh.edges.resize(topology.edges.size());
@@ -56,7 +56,7 @@ void add_source_edges(LevelState& state, const SiftedFaces& sifted) {
 
 } // namespace
 
-RefinedEdge edge_of(const std::vector<MappedPoint>& points, std::uint32_t p, std::uint32_t q, std::uint32_t source) {
+RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source) {
   RefinedEdge edge;
   const bool in_order = precedes(points[p].eye, points[q].eye);
   edge.a = in_order ? p : q;
@@ -68,6 +68,7 @@ RefinedEdge edge_of(const std::vector<MappedPoint>& points, std::uint32_t p, std
 LevelState start_levels(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options) {
   LevelState state{soup, oracle, options.cull};
   RefinedMesh& mesh = state.mesh;
+  mesh.points.reserve(soup.points.size() + soup.points.size() / 8 + 1024); // a few more must not move them all
   mesh.points.resize(soup.points.size());
   mesh.source_points = soup.points.size();
   parallel_each(soup.points.size(), level_block, [&](std::size_t i) { mesh.points[i] = oracle.locate(soup.points[i]); });

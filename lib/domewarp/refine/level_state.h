@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct LevelState {
   const EdgeOracle& oracle;
   const PictureCull* cull;
   RefinedMesh mesh{};
-  std::vector<RefinedFace> active{};  ///< neither final nor dropped
+  RawVector<RefinedFace> active{};  ///< neither final nor dropped
   std::uint32_t first_wedge = 0;      ///< id of mesh.wedges[0]
   std::uint32_t first_middle = 0;     ///< point id of the first middle of the edges that this level splits; they come in a row
 };
@@ -30,7 +31,7 @@ struct LevelState {
 LevelState start_levels(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options);
 
 /// The edge of the refined mesh that joins two points.
-RefinedEdge edge_of(const std::vector<MappedPoint>& points, std::uint32_t p, std::uint32_t q, std::uint32_t source);
+RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source);
 
 /// Edges to split and their points, in the order of the edges.
 using EdgeSplits = std::vector<std::pair<std::uint32_t, MappedPoint>>;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "domewarp/core/raw_vector.h"
 #include "domewarp/refine/edge_oracle.h"
 #include "domewarp/refine/soup.h"
 
@@ -43,13 +44,13 @@ struct SourceEdge {
 
 /// One branch of the surface, refined and clipped.
 struct RefinedMesh {
-  std::vector<MappedPoint> points; ///< those of the soup first
+  RawVector<MappedPoint> points; ///< those of the soup first
   std::size_t source_points = 0;   ///< how many these are
-  std::vector<RefinedEdge> edges;
+  RawVector<RefinedEdge> edges;
   std::vector<SourceEdge> source_edges;
-  std::vector<Wedge> wedges;     ///< those made here; their ids follow the soup's
+  RawVector<Wedge> wedges;     ///< those made here; their ids follow the soup's
   std::vector<std::size_t> wedge_groups; ///< ends of runs of wedges whose parents stand before the run; may be empty
-  std::vector<RefinedFace> faces; ///< final and visible
+  RawVector<RefinedFace> faces; ///< final and visible
   std::vector<WholeFace> whole;  ///< in the order of the soup
   float whole_depth_error = 0;   ///< bounds them all, relative
   std::size_t clipped = 0;

@@ -99,7 +99,7 @@ struct Block {
 
 } // namespace
 
-SiftedFaces sift_faces(const Soup& soup, const std::vector<MappedPoint>& points, const EdgeOracle& oracle, const LevelOptions& options) {
+SiftedFaces sift_faces(const Soup& soup, std::span<const MappedPoint> points, const EdgeOracle& oracle, const LevelOptions& options) {
   const Sieve sieve(oracle, options);
   SiftedFaces sifted;
   sifted.fate.resize(soup.faces.size());

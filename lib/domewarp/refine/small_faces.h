@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "domewarp/refine/levels.h"
@@ -15,7 +16,7 @@ enum class FaceFate : std::uint8_t {
 
 /// The faces of a soup, by what becomes of them.
 struct SiftedFaces {
-  std::vector<FaceFate> fate;            ///< per face
+  RawVector<FaceFate> fate;            ///< per face
   std::vector<std::uint32_t> refine;     ///< in the order of the soup
   std::vector<WholeFace> whole;          ///< in the order of the soup
   float depth_error = 0;                 ///< of the whole ones, relative
@@ -26,6 +27,6 @@ struct SiftedFaces {
 /// branch shows, or well inside and is so small that one bound proves all of it good. That bound never says so of a face
 /// one of whose edges EdgeOracle::decide would split, so no neighbour ever has a vertex on a whole face's side.
 /// @param points of the soup, located
-SiftedFaces sift_faces(const Soup& soup, const std::vector<MappedPoint>& points, const EdgeOracle& oracle, const LevelOptions& options);
+SiftedFaces sift_faces(const Soup& soup, std::span<const MappedPoint> points, const EdgeOracle& oracle, const LevelOptions& options);
 
 } // namespace domewarp

@@ -73,8 +73,8 @@ std::size_t number_wedges(const Scene& scene, std::vector<SoupPart>& parts) {
   return wedges;
 }
 
-std::vector<Vec3> eye_positions(const Scene& scene, const View& view, const std::vector<SoupPart>& parts, std::size_t wedges) {
-  std::vector<Vec3> positions(wedges);
+RawVector<Vec3> eye_positions(const Scene& scene, const View& view, const std::vector<SoupPart>& parts, std::size_t wedges) {
+  RawVector<Vec3> positions(wedges);
   parallel_each(parts.size(), 1, [&](std::size_t i) {
     const Primitive& primitive = primitive_of(scene, parts[i]);
     const Mat4& world = scene.instances[parts[i].instance].world;
@@ -92,7 +92,7 @@ bool is_degenerate(const SoupFace& face) {
 /// Drops the faces that is_dropped(face) names. @return how many
 template <typename Predicate>
 std::size_t drop_faces(Soup& soup, Predicate&& is_dropped) {
-  std::vector<std::uint8_t> dropped(soup.faces.size());
+  RawVector<std::uint8_t> dropped(soup.faces.size());
   std::atomic<std::size_t> count = 0;
   parallel_ranges(dropped.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::size_t here = 0;
@@ -128,7 +128,7 @@ void add_faces(const Scene& scene, Soup& soup) {
 
 /// Only the open edges.
 MeshTopology topology_of(const Soup& soup) {
-  std::vector<Triangle> triangles(soup.faces.size());
+  RawVector<Triangle> triangles(soup.faces.size());
   parallel_each(triangles.size(), 4096, [&](std::size_t f) { triangles[f] = soup.faces[f].point; });
   return {find_open_edges(static_cast<std::uint32_t>(soup.points.size()), triangles), {}};
 }
@@ -145,7 +145,7 @@ public:
     if (junctions_.empty()) return false;
     std::vector<std::uint8_t> is_end(soup_.points.size(), 0);
     for (const TJunction& junction : junctions_) is_end[open_.edges[junction.edge].a] = is_end[open_.edges[junction.edge].b] = 1;
-    std::vector<SoupFace> done;
+    RawVector<SoupFace> done;
     done.reserve(soup_.faces.size() + 2 * junctions_.size());
     for (const SoupFace& face : soup_.faces) split(face, is_end, done);
     soup_.faces = std::move(done);
@@ -153,7 +153,7 @@ public:
   }
 
 private:
-  void split(const SoupFace& face, const std::vector<std::uint8_t>& is_end, std::vector<SoupFace>& done) {
+  void split(const SoupFace& face, const std::vector<std::uint8_t>& is_end, RawVector<SoupFace>& done) {
     std::array<std::vector<std::uint32_t>, 3> on; // points to insert on each side, in the face's direction
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t from = face.point[k], to = face.point[(k + 1) % 3];
@@ -169,7 +169,7 @@ private:
   }
 
   // Cuts at the middle point of one side, towards the corner opposite; the cut has no points of its own.
-  void cut(const SoupFace& face, const std::array<std::vector<std::uint32_t>, 3>& on, std::vector<SoupFace>& done) {
+  void cut(const SoupFace& face, const std::array<std::vector<std::uint32_t>, 3>& on, RawVector<SoupFace>& done) {
     const auto side = std::find_if(on.begin(), on.end(), [](const auto& points) { return !points.empty(); });
     if (side == on.end()) {
       done.push_back(face);
@@ -240,7 +240,8 @@ Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options)
 Soup make_loose_soup(const Scene& scene, const View& view) {
   Soup soup;
   soup.parts = list_parts(scene);
-  soup.points = eye_positions(scene, view, soup.parts, number_wedges(scene, soup.parts));
+  const RawVector<Vec3> positions = eye_positions(scene, view, soup.parts, number_wedges(scene, soup.parts));
+  soup.points.assign(positions.begin(), positions.end());
   soup.wedge_point.resize(soup.points.size());
   std::iota(soup.wedge_point.begin(), soup.wedge_point.end(), 0u);
   add_faces(scene, soup);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "domewarp/core/vectors.h"
+#include "domewarp/core/raw_vector.h"
 #include "domewarp/mesh/topology.h"
 #include "domewarp/refine/view_cull.h"
 #include "domewarp/scene/scene.h"
@@ -41,7 +42,7 @@ struct Soup {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> wedge_point; ///< per source vertex
   std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split
-  std::vector<SoupFace> faces;
+  RawVector<SoupFace> faces;
   std::size_t source_triangles = 0;
   std::size_t degenerate_triangles = 0;   ///< two corners at one position: dropped, they cover nothing
   std::size_t outside_view = 0;           ///< of primitives that cannot be seen: dropped before anything was transformed
