@@ -161,7 +161,7 @@ BatchMap::BatchMap(const Surface& surface, const BatchOptions& options) {
     if (!fit && !branch.table().used) impl->report = {false, true, branch.table().reason};
   if (fit) {
     impl->table = fit->table;
-    impl->report = {true, false, TableReason::used, fit->table.pieces, FloatTable::degree(fit->table.fine), fit->predicted_error, fit->weight_error, 0};
+    impl->report = {true, false, TableReason::used, fit->table.pieces, fit->table.degree, fit->predicted_error, fit->weight_error, 0};
   }
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   impl->report.build_ms = elapsed.count();

@@ -255,10 +255,10 @@ struct Coefficients {
 };
 
 // Stage 2: the polynomials and the one division.
-template <int pieces, bool fine, bool behind, bool perspective, bool split>
+template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
 struct Finisher {
   Interleaving interleaving;
-  Coefficients<pieces, FloatTable::powers(fine)> q, g;
+  Coefficients<pieces, degree + 1> q, g;
   V scale, u_max, g_beyond, last_ahead;
 
   HWY_INLINE explicit Finisher(const FloatTable& table)
@@ -294,10 +294,10 @@ struct Finisher {
 
 // The second stage follows the first at a distance, so that the divisions and roots of one overlap the arithmetic of the
 // other.
-template <int pieces, bool fine, bool behind, bool perspective, bool split>
+template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
 HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out) {
   Locator locator(table);
-  const Finisher<pieces, fine, behind, perspective, split> finisher(table);
+  const Finisher<pieces, degree, fine, behind, perspective, split> finisher(table);
   constexpr std::size_t lag = 6, vectors = batch_block / lanes;
   Place places[2 * lag];
   for (std::size_t i = 0; i < lag; ++i) locator.template Run<fine, behind, split>(in, i * lanes, places[i]);
@@ -309,25 +309,26 @@ HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Poin
   return !locator.fitness.All();
 }
 
-template <int pieces, bool fine, bool behind, bool perspective>
+template <int pieces, int degree, bool fine, bool behind, bool perspective>
 bool MapLayout(const FloatTable& table, const ConstPoints& in, const Points& out) {
-  return in.stride == 1 ? Map<pieces, fine, behind, perspective, true>(table, in, out)
-                        : Map<pieces, fine, behind, perspective, false>(table, in, out);
+  return in.stride == 1 ? Map<pieces, degree, fine, behind, perspective, true>(table, in, out)
+                        : Map<pieces, degree, fine, behind, perspective, false>(table, in, out);
 }
 
-template <int pieces, bool fine>
+template <int pieces, int degree, bool fine>
 bool MapWith(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
   const bool behind = table.reaches_behind();
-  if (output == BatchOutput::image) return behind ? MapLayout<pieces, fine, true, false>(table, in, out) : MapLayout<pieces, fine, false, false>(table, in, out);
-  return behind ? MapLayout<pieces, fine, true, true>(table, in, out) : MapLayout<pieces, fine, false, true>(table, in, out);
+  if (output == BatchOutput::image) return behind ? MapLayout<pieces, degree, fine, true, false>(table, in, out) : MapLayout<pieces, degree, fine, false, false>(table, in, out);
+  return behind ? MapLayout<pieces, degree, fine, true, true>(table, in, out) : MapLayout<pieces, degree, fine, false, true>(table, in, out);
 }
 
 bool MapInto(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
-  if (table.fine) return MapWith<32, true>(table, in, out, output);
+  if (table.fine) return MapWith<32, 7, true>(table, in, out, output);
+  if (table.degree == 7) return MapWith<8, 7, false>(table, in, out, output);
   switch (table.pieces) {
-  case 8: return MapWith<8, false>(table, in, out, output);
-  case 16: return MapWith<16, false>(table, in, out, output);
-  default: return MapWith<32, false>(table, in, out, output);
+  case 8: return MapWith<8, 5, false>(table, in, out, output);
+  case 16: return MapWith<16, 5, false>(table, in, out, output);
+  default: return MapWith<32, 5, false>(table, in, out, output);
   }
 }
 

@@ -66,11 +66,12 @@ Piece interpolate(const Piece& x, Piece y, int nodes) {
 
 class Fitter {
 public:
-  Fitter(const Surface& surface, double alpha, int pieces, bool fine)
-      : surface_(surface), branch_(surface.branches().front()), nodes_(FloatTable::powers(fine)) {
+  Fitter(const Surface& surface, double alpha, int pieces, int degree, bool fine)
+      : surface_(surface), branch_(surface.branches().front()), nodes_(degree + 1) {
     index_ = {alpha, 1};
     u_end_ = branch_.theta_high >= pi ? 1 : index_.u(std::sin(branch_.theta_high), std::cos(branch_.theta_high));
     fit_.table.pieces = pieces;
+    fit_.table.degree = degree;
     fit_.table.fine = fine;
     fit_.table.alpha = static_cast<float>(alpha);
     fit_.table.scale = static_cast<float>(scale());
@@ -225,16 +226,19 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
   if (branches.size() != 1 || first.theta_low != 0 || first.orientation < 0 || first.fold_high) return std::nullopt;
   constexpr double fine_weight = 2.5e-3, usable_weight = 0.05; // any smooth positive weight draws the same picture
   constexpr double aim = 0.2;             // of what is allowed: look no further
-  for (const int pieces : {8, 16, 32})
+  constexpr struct {
+    int pieces, degree;
+  } sizes[] = {{8, 5}, {8, 7}, {16, 5}, {32, 5}}; // the faster first
+  for (const auto [pieces, degree] : sizes)
     for (const double alpha : {1.0, 4.0, 0.5, 2.0, 16.0, 0.25}) {
-      Fitter fitter(surface, alpha, pieces, false);
+      Fitter fitter(surface, alpha, pieces, degree, false);
       if (!fitter.fit(aim * max_error)) continue;
       const FloatFit fit = fitter.finish();
       if (fit.weight_error <= (pieces < FloatTable::most_pieces ? fine_weight : usable_weight)) return fit;
     }
   std::optional<FloatFit> best;
   for (const double alpha : {16.0, 4.0, 1.0, 64.0}) {
-    Fitter fitter(surface, alpha, FloatTable::most_pieces, true);
+    Fitter fitter(surface, alpha, FloatTable::most_pieces, FloatTable::most_powers - 1, true);
     if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
     const FloatFit fit = fitter.finish();
     if (fit.weight_error > usable_weight) continue;

@@ -14,20 +14,19 @@ namespace domewarp {
 /// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q), Q = sin(theta) / R(theta). On the tangent
 /// line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
 struct FloatTable {
-  static constexpr int degree(bool fine) { return fine ? 7 : 5; }
-  static constexpr int powers(bool fine) { return degree(fine) + 1; }
   static constexpr int most_powers = 8, most_pieces = 32;
   static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
 
-  int pieces = 16;   ///< 8, 16 or 32
-  bool fine = false; ///< position in the piece in double precision; 32 pieces of a higher degree
+  /// 8 of degree 5 or 7, 16 or 32 of degree 5, or 32 of degree 7 where fine.
+  int pieces = 16, degree = 5;
+  bool fine = false; ///< position in the piece in double precision
   float alpha = 1, scale = 1;
   float u_max = 0;      ///< beyond: tangent extension
   float last_ahead = 0; ///< beyond that piece, Q is 1 / R and divides x / r: sin(theta) / R vanishes on the backward axis
   float u_blind = 0;    ///< beyond: blind
   float beyond_z = 0, beyond_r = 0;
   float g_beyond = 1;
-  alignas(64) float q[most_powers][most_pieces]{}; ///< coefficients, highest power first; the first rows are empty unless fine
+  alignas(64) float q[most_powers][most_pieces]{}; ///< coefficients, highest power first; the first rows are empty below degree 7
   alignas(64) float g[most_powers][most_pieces]{}; ///< of the perspective output's weight
 
   bool reaches_behind() const { return u_max * scale > last_ahead + 0.5F; }
