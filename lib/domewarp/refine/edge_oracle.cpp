@@ -210,7 +210,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   decision.depth_error = rounded_up(whole.depth);
   decision.arch = rounded_up(whole.second / (8 * least));
   if (is_good()) return decision;
-  const EdgeBend brief = bound_.short_segments({glm::length(b.eye - a.eye), std::min(a.rho, b.rho), std::min(a.u, b.u), std::max(a.u, b.u), least, std::max(from.weight, to.weight)});
+  const EdgeBend brief = bound_.short_segments({small_angle(glm::length(b.eye - a.eye), std::min(a.rho, b.rho)), std::min(a.u, b.u), std::max(a.u, b.u), least, std::max(from.weight, to.weight)});
   if (brief.second / (8 * least) <= options_.tolerance && brief.depth <= options_.depth_tolerance) {
     decision.error = std::min(decision.error, rounded_up(brief.second / (8 * least)));
     decision.arch = std::min(decision.arch, rounded_up(brief.second / (8 * least)));

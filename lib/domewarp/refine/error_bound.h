@@ -36,14 +36,17 @@ struct EdgeBend {
 
 /// Segments between points of a small figure, a segment or a triangle.
 struct ShortSegments {
-  double longest = 0;                       ///< side of the figure
-  double nearest = 0;                       ///< of its corners to the eye
+  double angle = 0;                         ///< that each of them takes up at most, see small_angle
   double u_low = 0, u_high = 1;             ///< of its corners
   double weight_low = 1, weight_high = 1;   ///< of its corners
 };
 
-/// How far the half-angle index of any of their points may lie outside [u_low, u_high]; infinite when the figure is not small.
-double u_margin(const ShortSegments& segments);
+/// A bound of the angle (radians) that a segment of the figure takes up for the eye; infinite when the figure is not small.
+/// @param longest side, @param nearest corner to the eye
+double small_angle(double longest, double nearest);
+
+/// How far the half-angle index of any point of the figure may lie outside those of its corners.
+inline double u_margin(double angle) { return 0.51 * angle; } // du/dtheta <= 1/2, and every point is within the angle of a corner
 
 /// Certified bounds of what a rasteriser's interpolation does to the image, for one branch.
 ///

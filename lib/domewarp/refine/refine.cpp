@@ -159,7 +159,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options(options, raster));
     const PictureCull off_picture(branch, half_extent);
-    const RefinedMesh refined = refine_within(soup, oracle, {options.max_triangles, options.skip.off_picture ? &off_picture : nullptr, options.skip.small_faces});
+    RefinedMesh refined = refine_within(soup, oracle, {options.max_triangles, options.skip.off_picture ? &off_picture : nullptr, options.skip.small_faces});
     report.skipped.off_picture += refined.off_picture;
     report.skipped.small_faces += refined.whole.size();
     report.levels = std::max(report.levels, refined.levels);
@@ -168,8 +168,9 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     report.uncertified_faces += refined.uncertified_faces;
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
     report.levels_ms += watch.lap();
-    emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
     audit_edges(refined, oracle, raster, options, report);
+    refined.edges = {}; // the largest part, and nobody asks any more
+    emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
     emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }

@@ -14,12 +14,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widest = 0.1; ///< radians; the factors below hold up to there
 constexpr double slack = 1e-9;
 
-/// A bound of the angle that a segment takes up for the eye, which no point of it is nearer to than this allows.
-double angle_of(const ShortSegments& s) {
-  const double nearest = s.nearest - s.longest;
-  return nearest > 0 ? s.longest / nearest : infinity;
-}
-
 double magnitude(const Range& a) { return std::max(-a.low, a.high); }
 
 /// Of the angle theta with this half-angle index; infinite on the axes.
@@ -27,10 +21,9 @@ double cotangent(double u) { return (1 - 2 * u) / (2 * u * (1 - u)); }
 
 } // namespace
 
-// du/dtheta <= 1/2, and every point of the figure is within the angle of a corner.
-double u_margin(const ShortSegments& s) {
-  const double angle = angle_of(s);
-  return angle <= widest ? 0.51 * angle : infinity;
+double small_angle(double longest, double nearest) {
+  const double angle = longest / (nearest - longest);
+  return nearest > longest && angle <= widest ? angle : infinity;
 }
 
 // With kappa <= angle, |c| <= |W'| + W angle, |I_psi| <= max(|R'|, |K|) and |I_psipsi|^2 <= max(|A|, |B|)^2 + C^2 in the
@@ -38,8 +31,8 @@ double u_margin(const ShortSegments& s) {
 // the range of its slope x g' dpsi/dt, where |dx/dpsi| = |sin(chi)^2 cot(theta)| and dpsi/dt varies by 1 / cos(psi / 2)^2.
 EdgeBend ErrorBound::short_segments(const ShortSegments& s) const {
   const EdgeBend unknown{infinity, infinity};
-  const double margin = u_margin(s), angle = angle_of(s);
-  if (!(margin < infinity)) return unknown;
+  const double angle = s.angle, margin = u_margin(angle);
+  if (!(angle < infinity)) return unknown;
   const double u_low = std::max(0.0, s.u_low - margin), u_high = std::min(1.0, s.u_high + margin);
   const RadialRange r = ranges_.over(u_low, u_high);
   if (r.slope_jump > 0 || r.weight_jump > 0) return unknown;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -51,20 +50,20 @@ public:
     const std::array<const MappedPoint*, 3> corner{&a, &b, &c};
     const auto [u_low, u_high] = std::minmax({a.u, b.u, c.u});
     const auto length2 = [](const MappedPoint& p, const MappedPoint& q) { return glm::dot(p.eye - q.eye, p.eye - q.eye); };
-    ShortSegments segments{std::sqrt(std::max({length2(a, b), length2(b, c), length2(c, a)})), std::min({a.rho, b.rho, c.rho}), u_low, u_high, 1, 1};
-    const double margin = u_margin(segments);
-    if (!(margin < 1)) return {};
+    const double longest = std::sqrt(std::max({length2(a, b), length2(b, c), length2(c, a)})), nearest = std::min({a.rho, b.rho, c.rho});
+    const double angle = small_angle(longest, nearest), margin = u_margin(angle);
+    if (!(angle < infinity)) return {};
     const auto all = [&](int boundary, int side) {
       return std::all_of(corner.begin(), corner.end(), [&](const MappedPoint* p) { return p->sides[boundary] == side; });
     };
     if ((u_low - margin > u_high_ && all(high_, -1)) || (u_high + margin < u_low_ && all(low_, -1))) return {FaceFate::drop};
-    if (!options_.small_faces || u_low - margin < u_low_ || u_high + margin > u_high_ || segments.nearest - segments.longest <= nearest_) return {};
+    if (!options_.small_faces || u_low - margin < u_low_ || u_high + margin > u_high_ || nearest - longest <= nearest_) return {};
     for (int i = 0; i < 3; ++i)
       if (!all(i, 1)) return {};
     if (is_asked_for(corner) || is_flipped(corner, oracle_.orientation(), thickness_)) return {};
-    std::tie(segments.weight_low, segments.weight_high) = std::minmax({a.mapped.weight, b.mapped.weight, c.mapped.weight});
-    const EdgeBend bend = oracle_.short_segments(segments);
-    const double error = bend.second / (8 * segments.weight_low);
+    const auto [lightest, heaviest] = std::minmax({a.mapped.weight, b.mapped.weight, c.mapped.weight});
+    const EdgeBend bend = oracle_.short_segments({angle, u_low, u_high, lightest, heaviest});
+    const double error = bend.second / (8 * lightest);
     const OracleOptions& limits = oracle_.options();
     if (!(error <= strictness * limits.tolerance && face_over_edge * error <= limits.face_tolerance && bend.depth <= strictness * limits.depth_tolerance))
       return {};

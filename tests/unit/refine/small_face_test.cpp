@@ -69,7 +69,7 @@ ShortSegments segments_of(const std::array<MappedPoint, 3>& p) {
   const auto length = [&](int i, int j) { return glm::length(p[i].eye - p[j].eye); };
   const auto [u_low, u_high] = std::minmax({p[0].u, p[1].u, p[2].u});
   const auto [low, high] = std::minmax({p[0].mapped.weight, p[1].mapped.weight, p[2].mapped.weight});
-  return {std::max({length(0, 1), length(1, 2), length(2, 0)}), std::min({p[0].rho, p[1].rho, p[2].rho}), u_low, u_high, low, high};
+  return {small_angle(std::max({length(0, 1), length(1, 2), length(2, 0)}), std::min({p[0].rho, p[1].rho, p[2].rho})), u_low, u_high, low, high};
 }
 
 double depth_error(const EdgeOracle& oracle, const std::array<MappedPoint, 3>& p, const Vec3& l, Projection projection) {
