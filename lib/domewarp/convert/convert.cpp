@@ -124,13 +124,14 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
 }
 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {
-  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 &&
+  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 && report.packing_px <= options.refine.tolerance_px &&
          (options.refine.subdivision != Subdivision::adaptive || report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6));
 }
 
 std::string broken_promise(const ConvertReport& report, const ConvertOptions& options) {
   std::ostringstream text;
   text << "the tolerance of " << options.refine.tolerance_px << " px was not kept: certified " << report.refine.error_px_max << " px";
+  if (report.packing_px > options.refine.tolerance_px) text << ", rounding in the file moves points by up to " << report.packing_px << " px more";
   if (report.refine.open_edges > 0) text << ", " << report.refine.open_edges << " open edges that the source did not have";
   for (const std::string& limit : report.refine.limits_hit) text << ", stopped by " << limit;
   return text.str();

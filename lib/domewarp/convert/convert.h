@@ -47,6 +47,7 @@ struct ConvertReport {
   std::size_t expected_points = 0; ///< what Method::automatic went by
   std::vector<std::string> warnings;
   std::vector<std::string> dropped_extensions;
+  double packing_px = 0;        ///< how far rounding in the written file moves a vertex at most (packing_error.h)
   BakeReport baked;             ///< of Shading::bake
   double map_ms = 0;
   double hidden_ms = 0;         ///< rays of cull_hidden

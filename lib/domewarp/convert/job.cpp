@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/convert/job.h"
 
+#include "domewarp/convert/packing_error.h"
 #include "domewarp/gltf/geometric_extensions.h"
 #include "domewarp/gltf/vertex_order.h"
 
@@ -28,6 +29,7 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
   for (const std::string& name : drop_geometric_extensions(warped)) report.dropped_extensions.push_back(name);
   if (lights_dropped) report.dropped_extensions.push_back("KHR_lights_punctual");
   optimize_vertex_order(warped);
+  report.packing_px = packing_error_px(warped, options.write, options.convert.refine.projection, options.convert.raster);
   tell(progress, "write");
   write_scene(warped, output, options.write);
   return report;

@@ -71,8 +71,7 @@ class SceneWriter {
     if (options.draco && options.meshopt) throw Error(ErrorCode::usage, "--draco and --meshopt exclude each other");
     layout_.use_meshopt = options.meshopt;
     packing_ = options.draco ? Packing::draco : options.quantize ? Packing::quantized : Packing::plain;
-    if (packing_ == Packing::quantized) grid_ = grid_of(scene, 16);
-    if (packing_ == Packing::draco) grid_ = draco_grid(grid_of(scene, 20));
+    grid_ = grid_for(scene, options);
   }
 
   EncodedScene write() {
@@ -320,6 +319,12 @@ class SceneWriter {
 };
 
 } // namespace
+
+Grid grid_for(const Scene& scene, const WriteOptions& options) {
+  if (options.draco) return draco_grid(grid_of(scene, 20));
+  if (options.quantize) return grid_of(scene, 16);
+  return {Vec3(0), 1, 0};
+}
 
 EncodedScene encode_scene(const Scene& scene, const WriteOptions& options, const Placement& placement) {
   try {

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <set>
 #include <system_error>
+
+#include <glm/geometric.hpp>
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
@@ -109,6 +112,13 @@ void write_separate(const Scene& scene, const fs::path& path, const WriteOptions
 } // namespace
 
 } // namespace gltf
+
+double packing_error(const Scene& scene, const WriteOptions& options) {
+  const gltf::Grid grid = gltf::grid_for(scene, options);
+  if (grid.bits == 0) return 0;
+  const double largest = grid.range + glm::length(grid.origin);
+  return 0.5 * gltf::grid_step(grid) + largest * std::numeric_limits<float>::epsilon();
+}
 
 std::vector<std::uint8_t> encode_glb(const Scene& scene, const WriteOptions& options) {
   gltf::Glb glb = gltf::encode(scene, options);

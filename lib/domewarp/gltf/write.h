@@ -25,6 +25,10 @@ struct WriteOptions {
 /// Error(usage) when the extension is neither .glb nor .gltf or options exclude each other.
 void write_scene(const Scene& scene, const std::filesystem::path& path, const WriteOptions& options = {});
 
+/// How far `draco` or `quantize` move a coordinate of a position at most, in the space of the meshes: half a step of the
+/// grid, and the rounding of single precision. 0 without them.
+double packing_error(const Scene& scene, const WriteOptions& options);
+
 /// The bytes of the .glb file that `write_scene` writes.
 std::vector<std::uint8_t> encode_glb(const Scene& scene, const WriteOptions& options = {});
 
