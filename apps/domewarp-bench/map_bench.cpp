@@ -125,13 +125,13 @@ void choose(std::int64_t targets) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-// The least time of each way per point, in rounds in which all take turns.
+// The least processor time of each way per point, in rounds in which all take turns.
 std::vector<double> time_ways(const std::vector<Way>& ways, const Cloud& in, int rounds) {
   std::vector<double> least(ways.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < ways.size(); ++i) {
       choose(ways[i].targets);
-      least[i] = std::min(least[i], seconds(ways[i].work));
+      least[i] = std::min(least[i], processor_seconds(ways[i].work));
     }
   choose(0);
   for (double& time : least) time *= 1e9 / static_cast<double>(in.count());
@@ -202,7 +202,7 @@ void measure_curve(const std::string& text, double r_max, std::size_t count, int
 
 Table tabulate(const std::vector<Row>& rows) {
   Table table{"map",
-              "The map on one thread, random directions; ratio to the faster copy with one multiplication; * no other method is both faster and more exact",
+              "The map on one thread, random directions, processor time; ratio to the faster copy with one multiplication; * no other method is both faster and more exact",
               {{"curve", "curve"}, {"r_max", "r_max"}, {"points", "points"}, {"method", "method"}, {"table_bytes", "table (B)"},
                {"ns_per_vertex", "ns/vertex"}, {"ratio_to_copy", "ratio to copy"}, {"max_error", "max error"},
                {"rms_error", "RMS error"}, {"px_4096", "max px at 4096"}, {"px_8192", "max px at 8192"}, {"pareto", "Pareto"}},

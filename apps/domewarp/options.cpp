@@ -152,7 +152,7 @@ void add_raster_options(CLI::App& app, Raster& raster) {
 }
 
 void add_method_option(CLI::App& app, Method& method) {
-  add_choice<Method>(app, "--method", "How points are mapped; auto: tables from about 100 points on (default auto)",
+  add_choice<Method>(app, "--method", "How points are mapped; auto: tables from about 400 points on (default auto)",
                      {{"auto", Method::automatic}, {"direct", Method::direct}, {"lut", Method::table}}, [&method](Method m) { method = m; });
 }
 

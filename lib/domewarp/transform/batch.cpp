@@ -19,7 +19,7 @@ namespace domewarp {
 namespace {
 
 constexpr std::size_t block = batch_block;
-constexpr std::size_t blocks_per_task = 64; // fewer points are not worth a second thread
+constexpr std::size_t blocks_per_task = 32; // fewer points are not worth a second thread
 
 // One block in arrays of its own.
 struct Buffer {

@@ -16,8 +16,9 @@ namespace domewarp {
 enum class Method { automatic, direct, table };
 const char* to_string(Method method); ///< "auto", "direct", "lut"
 
-/// Points from which on building a table takes less time than it saves (measured: `domewarp-bench map`, "crossing").
-inline constexpr std::size_t table_pays_from = 100;
+/// Points from which on building a table takes less time than it saves (measured: `domewarp-bench map`, "pays from":
+/// 70 to 1200, median 500; tables in single precision are built in a fifth of the time).
+inline constexpr std::size_t table_pays_from = 400;
 inline constexpr std::size_t many_points = std::numeric_limits<std::size_t>::max();
 
 enum class PointState { visible, extended, blind };
