@@ -11,8 +11,8 @@ namespace domewarp {
 /// projector folded in, in single precision.
 ///
 /// Index: u = n / (n + alpha o) with tan(theta / 2) = n / o, analytic over all directions; piece round(u scale), position
-/// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q), Q = sin(theta) / R(theta). On the tangent
-/// line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
+/// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q),
+/// Q = sin(theta) / R(theta). On the tangent line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
 struct FloatTable {
   static constexpr int most_powers = 8, most_pieces = 32;
   static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
@@ -36,12 +36,13 @@ struct FloatTable {
 struct FloatFit {
   FloatTable table;
   double approximation = 0;   ///< error of the polynomials, image units
-  double predicted_error = 0; ///< with the rounding of single precision: 1.2e-7 max |u dR/du| + 3e-7 r_max
+  /// With the rounding of single precision: 1.2e-7 max |u dR/du| + 3e-7 r_max, or 3.6e-7 r_max where fine.
+  double predicted_error = 0;
   double weight_error = 0;    ///< relative, of g
 };
 
-/// The smallest table whose predicted error is at most a fifth of `max_error`, or the best one if that is at most
-/// `max_error`; nothing where there is none, or where the surface is not one branch that rises from the axis.
+/// The fastest table whose predicted error is at most a fifth of `max_error`, or else the best fine one if that is at
+/// most `max_error`; nothing where there is none, or where the surface is not one branch that rises from the axis.
 std::optional<FloatFit> make_float_table(const Surface& surface, double max_error);
 
 } // namespace domewarp
