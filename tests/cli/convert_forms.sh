@@ -28,6 +28,15 @@ smaller() { [ "$(stat -c %s "$1")" -lt "$(stat -c %s "$2")" ]; }
 
 toys="$root/data/toys.glb --curve 1-r^2 --size 512x512"
 
+# A triangle, lines and points.
+cat >in_lines.gltf <<J
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAAAAAAADAAACAPwAAAAAAAADAAAAAAAAAgD8AAADA"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, 0, -2], "max": [1, 1, -2]}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}, "mode": 2}, {"attributes": {"POSITION": 0}, "mode": 0}]}]}
+J
+
 # Compressed: sound once decoded, and the picture of the plain file.
 convert plain.glb $toys --source-attributes
 same "plain" 0 $?
@@ -45,6 +54,17 @@ check "its .bin is there" [ -s separate.bin ]
 convert both.glb $toys --draco --meshopt
 same "--draco with --meshopt" 1 $?
 check "both are named" grep -q -- '--draco and --meshopt' stderr
+
+# Something near in a wide scene: the one grid is too coarse for it, which is said.
+sed 's|"nodes": \[{"mesh": 0}\]|"nodes": [{"mesh": 0}, {"mesh": 0, "scale": [2000, 2000, 2000]}]|; s|"scenes": \[{"nodes": \[0\]}\]|"scenes": [{"nodes": [0, 1]}]|' in_lines.gltf >in_wide.gltf
+wide="in_wide.gltf --lens equidistant --size 2048x2048 --eye 0,0,0 --forward 0,0,-1"
+convert wide.glb $wide --quantize --report report.json
+same "a near thing on a coarse grid" 3 $?
+check "rounding is named" grep -q 'rounding in the file moves points by up to' stderr
+check "rounding is reported" grep -q '"packing_px": [1-9]' report.json
+convert wide.glb $wide --meshopt --report report.json
+same "the same without loss" 0 $?
+check "nothing is rounded" grep -q '"packing_px": 0.0' report.json
 
 # Light in the colours: shadows change them, quantised ones keep 16 bits.
 lit="$root/data/toys.glb --curve 1-r^2 --size 256x256 --shading bake"
@@ -84,13 +104,6 @@ same "memory enough" 0 $?
 check "the limit changes nothing" cmp -s small.glb plain.glb
 
 # Lines and points, which the thesis' recursion cannot divide.
-cat >in_lines.gltf <<J
-{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
- "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAAAAAAADAAACAPwAAAAAAAADAAAAAAAAAgD8AAADA"}],
- "bufferViews": [{"buffer": 0, "byteLength": 36}],
- "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, 0, -2], "max": [1, 1, -2]}],
- "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": 0}, "mode": 2}, {"attributes": {"POSITION": 0}, "mode": 0}]}]}
-J
 lines="in_lines.gltf --lens equidistant --size 256x256 --eye 0,0,0 --forward 0,0,-1"
 "$domewarp" convert $lines -o lines.glb --subdivide isotropic --report report.json >stdout 2>stderr
 same "lines with isotropic" 0 $?

@@ -124,8 +124,9 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
 }
 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {
-  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 && report.packing_px <= options.refine.tolerance_px &&
-         (options.refine.subdivision != Subdivision::adaptive || report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6));
+  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 &&
+         (options.refine.subdivision != Subdivision::adaptive ||
+          (report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6) && report.packing_px <= options.refine.tolerance_px));
 }
 
 std::string broken_promise(const ConvertReport& report, const ConvertOptions& options) {
