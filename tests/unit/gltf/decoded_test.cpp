@@ -217,7 +217,8 @@ TEST(Draco, WouldBeCaughtLying) {
               low = std::nextafter(low.get<float>(), -100.0f);
             }),
             "POSITION: min");
-  EXPECT_EQ(defect([&](json& j) { j["accessors"][primitive["attributes"]["TEXCOORD_0"].get<std::size_t>()]["type"] = "VEC3"; }), "TEXCOORD_0: type");
+  const std::size_t texcoords = primitive["attributes"]["TEXCOORD_0"];
+  EXPECT_EQ(defect([&](json& j) { j["accessors"][texcoords]["type"] = "VEC3"; }), "TEXCOORD_0: type");
 }
 
 } // namespace
