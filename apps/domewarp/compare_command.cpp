@@ -103,7 +103,9 @@ std::string to_text(const CompareReport& report) {
          << report.displacement_px.rms << " px\n";
   else
     text << "displacement  not measured: the warped file has no _SOURCE_POSITION (convert --source-attributes)\n";
-  text << "depth         max " << 100 * report.depth_rel.max << " % off\n" << "colour        mean difference " << report.colour_difference << " of 255";
+  if (report.depth_rel.measured > 0)
+    text << "depth         max " << 100 * report.depth_rel.max << " % off, as the depth buffer saw it\n";
+  text << "colour        mean difference " << report.colour_difference << " of 255";
   if (report.psnr_db) text << ", PSNR " << *report.psnr_db << " dB";
   if (report.ssim) text << ", SSIM " << *report.ssim;
   text << ", FLIP mean " << report.flip.mean << " max " << report.flip.max << "\n";

@@ -13,6 +13,9 @@
 
 namespace domewarp {
 
+/// The multi-valued curve of Figure 21b.
+inline constexpr const char* folded_curve = "-0.1*r^4+2.25*r^2+0.2*cos(8*r)+1";
+
 /// What the figures are made of.
 struct Studio {
   std::vector<TestScene> scenes; ///< the bundled five
@@ -25,7 +28,7 @@ struct Studio {
 /// Figures 9, 10, 11, 12, 20, 21, 22 and 23: surfaces and traced rays.
 std::vector<Figure> ray_figures(const Studio& studio, const Progress& progress);
 
-/// Figures 19, 24, 27 and 28: warped points, where there are two renderers both.
+/// Figures 19, 21b, 24, 27 and 28: warped points, where there are two renderers both.
 std::vector<Figure> point_figures(const Studio& studio, const Progress& progress);
 
 /// A traced panorama. @param samples 1 for none of the antialiasing

@@ -69,6 +69,7 @@ std::vector<Figure> point_figures(const Studio& studio, const Progress& progress
   std::vector<Figure> figures;
   tell(progress, "figure 19", 0.5);
   add_projectors(studio, figures);
+  figures.push_back({"21b'", "folded, points", warped_panorama(studio, studio.scene("toys"), curve(folded_curve))});
   tell(progress, "figure 24", 0.65);
   add_scenes(studio, figures);
   tell(progress, "figure 27", 0.8);

@@ -114,10 +114,10 @@ void add_speck(std::vector<Figure>& figures, int samples) {
 }
 
 void add_curves(const Studio& studio, std::vector<Figure>& figures) {
-  const char* curves[] = {"-r^3+r^2+r+1", "-0.1*r^4+2.25*r^2+0.2*cos(8*r)+1", sphere, "1-2.5*r^2"};
+  const char* curves[] = {"-r^3+r^2+r+1", folded_curve, sphere, "1-2.5*r^2"};
   const char* pictures[] = {"21a", "21b", "21c", "21d"};
   const char* sections[] = {"21e", "21f", "21g", "21h"};
-  const char* captions[] = {"cubic", "folded", "spherical", "parabolic"};
+  const char* captions[] = {"cubic", "folded, rays", "spherical", "parabolic"};
   for (int i = 0; i < 4; ++i) figures.push_back({pictures[i], captions[i], panorama(studio, studio.scene("toys"), curve(curves[i]), studio.samples)});
   for (int i = 0; i < 4; ++i) figures.push_back({sections[i], curves[i], cross_section(curve(curves[i]), studio.raster, studio.raster)});
 }

@@ -14,7 +14,7 @@ double estimate_memory(const FileSurvey& survey, const ConvertOptions& options) 
   // the file and its decoded attributes are held once each while reading; then come welding, topology, the refined mesh and
   // the written file. Embree takes its threads' stacks, triangles and a tree.
   constexpr double program = 32 << 20, bytes_per_triangle = 250;
-  constexpr double ray_tracer = 110 << 20, bytes_per_ray_triangle = 150;
+  constexpr double ray_tracer = 110 << 20, bytes_per_ray_triangle = 230;
   const double plain = program + survey.file_bytes + survey.decoded_bytes + bytes_per_triangle * survey.drawn_triangles;
   const bool traces_rays = options.shading == Shading::bake || options.cull_hidden;
   return traces_rays ? plain + ray_tracer + bytes_per_ray_triangle * survey.drawn_triangles : plain;

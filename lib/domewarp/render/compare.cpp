@@ -20,7 +20,7 @@ namespace domewarp {
 
 namespace {
 
-/// How near depths must be to vote for two objects being one, and how evenly they must change inside a surface.
+/// How near depths must be to vote for two objects being one.
 constexpr double same_depth = 0.01;
 
 /// How far (relative to its distance) a source position may lie off the plane that the reference shows around it.
@@ -93,42 +93,36 @@ bool is_plainly_same(const Pictures& p, int column, int row) {
   return std::abs(glm::dot(normal, Vec3(p.warped.position[i])) - offset) <= position_rounding * p.warped.depth[i];
 }
 
-/// Inside a surface: one object all around, whose depth changes evenly in all four directions across the pixel.
-bool is_smooth(const Pictures& p, int column, int row) {
-  const Frame& f = p.reference;
-  if (column < 1 || row < 1 || column > f.width - 2 || row > f.height - 2) return false;
-  const std::size_t i = std::size_t(row) * std::size_t(f.width) + std::size_t(column), line = std::size_t(f.width);
-  for (const std::size_t step : {std::size_t{1}, line - 1, line, line + 1}) {
-    if (f.object[i - step] != f.object[i] || f.object[i + step] != f.object[i]) return false;
-    const double bend = double(f.depth[i - step]) + double(f.depth[i + step]) - 2.0 * f.depth[i];
-    if (!(std::abs(bend) <= same_depth * f.depth[i])) return false;
-  }
-  return true;
-}
+/// How a drawn point lies to what it shows.
+struct Drawn {
+  double displacement = std::numeric_limits<double>::quiet_NaN(); ///< px
+  double depth_off = std::numeric_limits<double>::quiet_NaN();    ///< relative
+};
 
-/// NaN where the pixel is at an outline or a crease, or no depth is known.
-double depth_difference(const Pictures& p, int column, int row) {
-  const std::size_t i = std::size_t(row) * std::size_t(p.reference.width) + std::size_t(column);
-  if (p.object[i] != p.reference.object[i] || !is_smooth(p, column, row))
-    return std::numeric_limits<double>::quiet_NaN();
-  const double reference = p.reference.depth[i];
-  return std::abs(p.warped.depth[i] - reference) / reference;
-}
-
-double displacement_px(const Surface& surface, const ImageMap& map, const Raster& raster, const Vec3f& position,
-                       int column, int row) {
-  const Vec3 p(position);
-  const double length = glm::length(p);
-  if (!(length > 0) || !std::isfinite(length)) return std::numeric_limits<double>::quiet_NaN();
+/// By the branch that owns the pixel's radius, or the neighbour within a pixel of its end that fits better.
+Drawn measure_drawn(const Pictures& p, const Screen& screen, const Surface& surface, const ImageMap& map,
+                    const Raster& raster, int column, int row) {
+  const std::size_t i = p.index(column, row);
+  const Vec3 at(p.warped.position[i]);
+  const double length = glm::length(at);
+  if (!(length > 0) || !std::isfinite(length)) return {};
   const Vec2 centre = pixel_centre(raster, column, row);
   const double radius = glm::length(centre), pixel = pixel_size(raster);
   double best = std::numeric_limits<double>::infinity();
+  const BranchMap* of_best = nullptr;
+  const auto try_branch = [&](const BranchMap& branch) {
+    const double distance = glm::length(branch.image(at) - centre);
+    if (distance < best) best = distance, of_best = &branch;
+  };
   for (const BranchMap& branch : map.branches) {
     const auto [low, high] = std::minmax({branch.branch().radius_low, branch.branch().radius_high});
-    if (radius >= low - pixel && radius <= high + pixel) best = std::min(best, glm::length(branch.image(p) - centre));
+    if (radius >= low - pixel && radius <= high + pixel) try_branch(branch);
   }
-  if (best > 1e300) best = glm::length(map.branches[surface.branch_at(radius)].image(p) - centre);
-  return best / pixel;
+  if (!of_best) try_branch(map.branches[surface.branch_at(radius)]);
+  if (!of_best) return {};
+  const double exact = length * (screen.perspective ? of_best->factors(at).g : 1.0);
+  const bool is_rasterised = !p.warped.drawn_depth.empty();
+  return {best / pixel, is_rasterised ? std::abs(p.warped.drawn_depth[i] / exact - 1) : Drawn{}.depth_off};
 }
 
 struct Judged {
@@ -151,20 +145,22 @@ Judged judge_pixel(const Pictures& p, const PixelJudge& judge, int column, int r
   return {judge.judge_drawn(column, row, Vec3(p.warped.position[i]), object, displacement), true};
 }
 
-void judge_rows(const Pictures& p, const PixelJudge& judge, const Surface& surface, const ImageMap& map,
-                const Raster& raster, CompareReport& report) {
+void judge_rows(const Pictures& p, const Screen& screen, const PixelJudge& judge, const Surface& surface,
+                const ImageMap& map, const Raster& raster, CompareReport& report) {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   report.displacement.assign(p.reference.object.size(), none);
+  report.depth_off.assign(p.reference.object.size(), none);
   report.verdicts.assign(p.reference.object.size(), Verdict::background);
   std::vector<std::size_t> arbitrated(std::size_t(raster.height), 0);
   parallel_each(std::size_t(raster.height), 4, [&](std::size_t line) {
     const int row = static_cast<int>(line);
     for (int column = 0; column < raster.width; ++column) {
       const std::size_t i = p.index(column, row);
-      double displacement = none;
-      if (p.warped.object[i]) displacement = displacement_px(surface, map, raster, p.warped.position[i], column, row);
-      report.displacement[i] = static_cast<float>(displacement);
-      const Judged judged = judge_pixel(p, judge, column, row, displacement);
+      Drawn drawn;
+      if (p.warped.object[i]) drawn = measure_drawn(p, screen, surface, map, raster, column, row);
+      report.displacement[i] = static_cast<float>(drawn.displacement);
+      report.depth_off[i] = static_cast<float>(drawn.depth_off);
+      const Judged judged = judge_pixel(p, judge, column, row, drawn.displacement);
       report.verdicts[i] = judged.verdict;
       arbitrated[line] += judged.arbitrated;
     }
@@ -179,6 +175,9 @@ void count_verdicts(const Pictures& p, CompareReport& report) {
     report.coverage.warped += p.warped.object[i] != 0;
     report.coverage.both += p.reference.object[i] != 0 && p.warped.object[i] != 0;
     ++count[static_cast<std::size_t>(report.verdicts[i])];
+    constexpr std::size_t most_flaws = 32;
+    if (report.verdicts[i] >= Verdict::pinhole && report.flaws.size() < most_flaws)
+      report.flaws.push_back({static_cast<int>(i % std::size_t(p.reference.width)), static_cast<int>(i / std::size_t(p.reference.width))});
   }
   const auto of = [&count](Verdict verdict) { return count[static_cast<std::size_t>(verdict)]; };
   report.pinholes_at_seams = of(Verdict::seam_pinhole);
@@ -233,16 +232,16 @@ void summarise_displacement(int width, CompareReport& report) {
   d.p999 = *nth;
 }
 
-void summarise_depth(const Pictures& p, CompareReport& report) {
-  for (int row = 0; row < p.reference.height; ++row)
-    for (int column = 0; column < p.reference.width; ++column) {
-      const std::size_t i = std::size_t(row) * std::size_t(p.reference.width) + std::size_t(column);
-      if (!p.reference.object[i] || !p.warped.object[i]) continue;
-      const double difference = depth_difference(p, column, row);
-      if (std::isnan(difference)) continue;
-      ++report.depth_rel.measured;
-      report.depth_rel.max = std::max(report.depth_rel.max, difference);
-    }
+void summarise_depth(int width, CompareReport& report) {
+  DepthReport& d = report.depth_rel;
+  for (std::size_t i = 0; i < report.depth_off.size(); ++i) {
+    if (std::isnan(report.depth_off[i])) continue;
+    ++d.measured;
+    if (d.worst_column >= 0 && report.depth_off[i] <= d.max) continue;
+    d.max = report.depth_off[i];
+    d.worst_column = static_cast<int>(i % std::size_t(width));
+    d.worst_row = static_cast<int>(i / std::size_t(width));
+  }
 }
 
 void summarise_colours(const Pictures& p, CompareReport& report) {
@@ -275,11 +274,11 @@ CompareReport compare_frames(const Frame& reference, const Frame& warped, const 
   pictures.object = match_objects(pictures);
   const PixelJudge judge(surface, raster, crossings, options.bound_px, options.depth_bound);
   CompareReport report;
-  judge_rows(pictures, judge, surface, map, raster, report);
+  judge_rows(pictures, screen, judge, surface, map, raster, report);
   count_verdicts(pictures, report);
   find_overlaps(pictures, screen, judge, options.depth_bound, report);
   summarise_displacement(raster.width, report);
-  summarise_depth(pictures, report);
+  summarise_depth(raster.width, report);
   summarise_colours(pictures, report);
   return report;
 }
@@ -302,7 +301,9 @@ std::string to_json(const CompareReport& report) {
                                {"worst", {d.worst_column, d.worst_row}}};
   json["depth_rel"] = nullptr;
   if (report.depth_rel.measured)
-    json["depth_rel"] = {{"max", report.depth_rel.max}, {"measured", report.depth_rel.measured}};
+    json["depth_rel"] = {{"max", report.depth_rel.max},
+                         {"measured", report.depth_rel.measured},
+                         {"worst", {report.depth_rel.worst_column, report.depth_rel.worst_row}}};
   json["psnr_db"] = nullptr;
   if (report.psnr_db) json["psnr_db"] = *report.psnr_db;
   json["ssim"] = nullptr;
@@ -311,6 +312,7 @@ std::string to_json(const CompareReport& report) {
   json["colour_difference"] = report.colour_difference;
   json["pinholes_at_seams"] = report.pinholes_at_seams;
   json["surface_mismatch_at_seams"] = report.surface_mismatch_at_seams;
+  json["flaws"] = report.flaws;
   json["outline"] = report.outline;
   json["depth_ties"] = report.depth_ties;
   json["arbitrated"] = report.arbitrated;

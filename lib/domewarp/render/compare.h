@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,20 +40,23 @@ struct DisplacementReport {
   int worst_column = -1, worst_row = -1;
 };
 
-/// |warped - reference| / reference inside surfaces: where both pictures show one object and the reference's depth is
-/// smooth over 3 x 3 pixels. On a slanted surface the displacement shows here too.
+/// |drawn - exact| / exact, where `drawn` is what the depth buffer sorted by and `exact` what the same point of the scene
+/// has: its distance times the weight of its direction, or its distance for an orthographic camera. This is what
+/// `convert` certifies as depth_error_rel. How far the point is from its place is the displacement, and not counted here.
 struct DepthReport {
-  std::size_t measured = 0; ///< pixels
+  std::size_t measured = 0; ///< pixels; 0 when the warped file carries no source positions, the rest is 0 then
   double max = 0;
+  int worst_column = -1, worst_row = -1;
 };
 
 struct CompareReport {
   CoverageReport coverage;
   std::size_t pinholes = 0; ///< uncovered in the warped picture, though the scene covers everything within the bound
-  std::size_t pinholes_at_seams = 0; ///< those of them where all surfaces end within the bound, because pieces abut
+  std::size_t pinholes_at_seams = 0; ///< those of them where every connected piece of surface ends within the bound: they abut
   std::optional<std::size_t> overlaps; ///< pixels covered more often than the scene has triangles there; none without source positions
+  std::vector<std::array<int, 2>> flaws; ///< column and row of the first pinholes and mismatches, 32 at most
   std::size_t surface_mismatch = 0; ///< a surface that nothing within the bound lets be seen there
-  std::size_t surface_mismatch_at_seams = 0; ///< those of them where all that hides it ends within the bound
+  std::size_t surface_mismatch_at_seams = 0; ///< those of them where every connected piece that hides it ends within the bound
   std::size_t outline = 0;    ///< differ in coverage or surface at an outline, by no more than the bound
   std::size_t depth_ties = 0; ///< show the other of two surfaces that are nearer to each other than the depth bound
   std::size_t arbitrated = 0; ///< pixels that were settled by exact rays
@@ -64,6 +68,7 @@ struct CompareReport {
   double colour_difference = 0;  ///< mean |difference| of the colour bytes over pixels covered in both, 0..255
 
   std::vector<float> displacement; ///< px, by pixel; NaN where not measured
+  std::vector<float> depth_off;    ///< by pixel, likewise
   std::vector<Verdict> verdicts;   ///< by pixel
   std::vector<std::uint8_t> covers; ///< by pixel: count_covers() where an overlap was found, else 0
 };

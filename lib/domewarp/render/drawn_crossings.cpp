@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "domewarp/render/parts.h"
+#include "domewarp/render/pieces.h"
 #include "domewarp/render/ray_geometry.h"
 #include "domewarp/render/shading.h"
 
@@ -41,9 +42,14 @@ bool is_drawn(const Parts& parts, const Crossing& crossing) {
 
 CrossingsAlong keep_drawn(const Scene& scene, CrossingsAlong crossings, double near) {
   const auto parts = std::make_shared<const Parts>(prepare_parts(scene));
-  return [parts, crossings = std::move(crossings), near](const Vec3& direction) {
+  const auto pieces = std::make_shared<const Pieces>(*parts);
+  return [parts, pieces, crossings = std::move(crossings), near](const Vec3& direction) {
     std::vector<Crossing> all = crossings(direction);
     std::erase_if(all, [&](const Crossing& c) { return c.distance < near || !is_drawn(*parts, c); });
+    for (Crossing& c : all) {
+      const Part& part = part_of(*parts, c);
+      c.piece = pieces->of(std::size_t(&part - parts->parts.data()), c.triangle - part.first_triangle);
+    }
     return all;
   };
 }

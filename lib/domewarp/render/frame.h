@@ -28,6 +28,7 @@ struct Frame {
   std::vector<std::uint8_t> rgba;    ///< 4 per pixel, sRGB with straight alpha
   std::vector<Vec3f> position;       ///< source position in eye space; NaN where nothing was hit or none is known
   std::vector<float> depth;          ///< |position|, NaN likewise
+  std::vector<float> drawn_depth;    ///< rasterised frames: how far in front of the camera, which is what decided; NaN likewise
   std::vector<std::uint32_t> object; ///< instance index + 1, 0 where nothing was hit
   std::vector<std::uint32_t>
       triangle;              ///< index of the triangle in its instance + 1 (all primitives counted), 0 likewise

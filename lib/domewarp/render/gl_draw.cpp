@@ -129,10 +129,25 @@ void GlDrawing::set(const char* name, int value) const {
   glUniform1i(location(name), value);
 }
 
+namespace {
+
+/// What the driver clips by: the whole picture where it can, so that no tile's border cuts a triangle.
+Tile window_of(int width, int height, const Tile& tile) {
+  GLint most[2] = {};
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, most);
+  return width <= most[0] && height <= most[1] ? Tile{0, 0, width, height} : tile;
+}
+
+} // namespace
+
 /// Blended triangles are drawn twice: all their colours, then ids, positions and depth of the nearest. In one pass
 /// either the depth written by a near triangle hides colours drawn later, or the ids are those of whatever came last.
 void GlDrawing::draw(const glm::mat4& projection, int width, int height, const Tile& tile) const {
-  glViewport(0, 0, tile.width, tile.height);
+  const Tile window = window_of(width, height, tile);
+  const int bottom = height - tile.top - tile.height;
+  glViewport(window.left - tile.left, height - window.top - window.height - bottom, window.width, window.height);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, tile.width, tile.height);
   glUseProgram(program_.name());
   glBindVertexArray(array_.name());
   set("base_map", 0);
@@ -142,8 +157,8 @@ void GlDrawing::draw(const glm::mat4& projection, int width, int height, const T
   glUniform1f(location("exposure"), static_cast<float>(scenery_.exposure));
   glUniformMatrix4fv(location("projection"), 1, GL_FALSE, &projection[0][0]);
   glUniform2f(location("picture"), static_cast<float>(width), static_cast<float>(height));
-  glUniform4f(location("tile"), static_cast<float>(tile.left), static_cast<float>(height - tile.top - tile.height),
-              static_cast<float>(tile.width), static_cast<float>(tile.height));
+  glUniform4f(location("window"), static_cast<float>(window.left), static_cast<float>(height - window.top - window.height),
+              static_cast<float>(window.width), static_cast<float>(window.height));
   glUniform1f(location("subpixels"), static_cast<float>(1 << subpixel_bits()));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lights_.name());
   glEnable(GL_DEPTH_TEST);
@@ -243,6 +258,7 @@ void GlTarget::bind() const {
 }
 
 void GlTarget::clear() const {
+  glDisable(GL_SCISSOR_TEST); // it would cut the clearing
   const GLfloat zero[4] = {};
   const GLuint no_ids[4] = {};
   mask_outputs(true, true);

@@ -11,14 +11,15 @@ layout(location = 3) in vec4 colour;
 layout(location = 4) in vec4 uv;
 uniform mat4 projection;  // camera space to the clip space of the picture
 uniform vec2 picture;     // its size, samples
-uniform vec4 tile;        // left, bottom, width, height of what is drawn now, samples
+uniform vec4 window;      // left, bottom, width, height of the part of it that clips, samples
 uniform float subpixels;  // per sample, of the driver's grid
 out vec4 point_source;
 out vec3 point_normal;
 out vec4 point_colour;
 out vec4 point_uv;
+out float point_depth;    // in front of the camera
 
-// A driver rounds vertices to its grid after it has added the tile's corner in float32, so that a vertex may fall on
+// A driver rounds vertices to its grid after it has added the window's corner in float32, so that a vertex may fall on
 // different points in two tiles. Rounded in the picture before, it cannot.
 vec2 on_grid(vec2 ndc) {
   return round((0.5 * ndc + 0.5) * picture * subpixels) / subpixels;
@@ -28,14 +29,15 @@ void main() {
   vec4 clip = projection * vec4(position, 1.0);
   vec2 at = clip.xy / clip.w;
   if (clip.w > 0.0 && all(lessThan(abs(at), vec2(8.0))))
-    clip.xy = (2.0 * (on_grid(at) - tile.xy) / tile.zw - 1.0) * clip.w;
+    clip.xy = (2.0 * (on_grid(at) - window.xy) / window.zw - 1.0) * clip.w;
   else
-    clip.xy = (clip.xy * picture + (picture - 2.0 * tile.xy - tile.zw) * clip.w) / tile.zw;
+    clip.xy = (clip.xy * picture + (picture - 2.0 * window.xy - window.zw) * clip.w) / window.zw;
   gl_Position = clip;
   point_source = source;
   point_normal = normal;
   point_colour = colour;
   point_uv = uv;
+  point_depth = -position.z;
 }
 )";
 
@@ -45,8 +47,9 @@ in vec4 point_source;
 in vec3 point_normal;
 in vec4 point_colour;
 in vec4 point_uv;
+in float point_depth;
 layout(location = 0) out vec4 out_colour;
-layout(location = 1) out vec4 out_source;
+layout(location = 1) out vec4 out_source;  // w: the depth, 0 without source positions
 layout(location = 2) out uvec2 out_ids;
 layout(location = 3) out vec4 out_normal;
 layout(location = 4) out vec2 out_uv;
@@ -149,7 +152,7 @@ void main() {
   if (emissive != vec3(0.0)) colour += emissive * read_texture(glow_map, point_uv.zw, glow_use).rgb;
   float alpha = alpha_mode == alpha_blend ? min(albedo.a, 1.0) : 1.0;
   out_colour = vec4(colour * alpha, alpha);
-  out_source = point_source;
+  out_source = vec4(point_source.xyz, point_source.w < 0.5 ? 0.0 : point_depth);
   out_ids = ids[first_triangle + gl_PrimitiveID];
   out_normal = vec4(seen_n, 1.0);
   out_uv = point_uv.xy;

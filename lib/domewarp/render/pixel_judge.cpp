@@ -27,20 +27,20 @@ constexpr double position_rounding = 2e-5;
 /// Two double-precision distances along one ray that differ by less (relative) are equal.
 constexpr double distance_rounding = 1e-9;
 
-/// Crossings of one object that are nearer than this (relative) in neighbouring rays belong to one piece of surface.
+/// Crossings of one object or piece that are nearer than this (relative) in neighbouring rays belong together.
 constexpr double sheet_thickness = 0.01;
 
 /// A plane through a piece of surface.
 struct Sheet {
   Vec3 normal;
   double offset;
-  std::uint32_t object;
+  std::uint32_t object, piece;
 
   double distance(const Vec3& direction) const { return offset / glm::dot(direction, normal); }
 };
 
 Sheet sheet_of(const Crossing& crossing, const Vec3& direction) {
-  return {crossing.normal, crossing.distance * glm::dot(direction, crossing.normal), crossing.object};
+  return {crossing.normal, crossing.distance * glm::dot(direction, crossing.normal), crossing.object, crossing.piece};
 }
 
 /// Whether something is nearer than the sheet by more than the margin (relative).
@@ -122,11 +122,11 @@ std::optional<Sheet> find_sheet(const std::vector<Crossing>& crossings, const Ve
   return found;
 }
 
-/// Whether a piece of surface goes on along another ray.
+/// Whether a connected piece of surface goes on along another ray.
 bool goes_on(const Sheet& sheet, const Vec3& direction, const std::vector<Crossing>& crossings) {
   const double distance = sheet.distance(direction);
   return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& c) {
-    return c.object == sheet.object && std::abs(c.distance - distance) <= sheet_thickness * distance;
+    return c.piece == sheet.piece && std::abs(c.distance - distance) <= sheet_thickness * distance;
   });
 }
 
@@ -163,6 +163,8 @@ Verdict PixelJudge::judge_drawn(int column, int row, const Vec3& p, std::uint32_
   };
   if (shows(distance_rounding)) return Verdict::outline;
   if (shows(depth_bound_)) return Verdict::depth_tie;
+  // What hides it is cut off at the rim, by a chord of its own.
+  if (probes.any([](const Probe& probe) { return probe.direction == Vec3(0); })) return Verdict::outline;
   for (const Crossing& crossing : centre.crossings) {
     if (crossing.distance >= distance * (1 - depth_bound_)) break;
     const Sheet hiding = sheet_of(crossing, centre.direction);

@@ -15,11 +15,11 @@ enum class Verdict : std::uint8_t {
   background,    ///< nothing in either picture
   same,          ///< the surface that is seen there
   depth_tie,     ///< another one, but the two are nearer to each other than drawn depths are exact
-  outline,       ///< another one or none, next to an outline that may be displaced by that much
+  outline,       ///< another one or none, next to an outline or the picture's rim, which may be displaced by that much
   pinhole,       ///< nothing is drawn, though the scene covers everything within the bound
-  seam_pinhole,  ///< the same, where every surface in the pixel ends within the bound: pieces abut there
+  seam_pinhole,  ///< the same, where every piece of connected surface in the pixel ends within the bound: they abut there
   mismatch,      ///< a surface that is hidden there, or none of the scene
-  seam_mismatch, ///< a hidden surface shows, where all that hides it ends within the bound
+  seam_mismatch, ///< a hidden surface shows, where every piece of connected surface that hides it ends within the bound
 };
 
 /// Judges pixels by what the scene has along the rays around them.

@@ -90,8 +90,9 @@ void store_layers(Frame& frame, std::size_t pixel, const GlTarget& data, std::si
   frame.object[pixel] = data.ids[i].object;
   frame.triangle[pixel] = data.ids[i].triangle;
   if (!data.ids[i].object) return;
-  if (data.source[i].w >= 0.5f) {
+  if (data.source[i].w > 0) {
     frame.position[pixel] = Vec3f(data.source[i]);
+    frame.drawn_depth[pixel] = data.source[i].w;
     frame.depth[pixel] = static_cast<float>(glm::length(Vec3(data.source[i])));
   }
   if (frame.normal.empty()) return;
@@ -160,8 +161,8 @@ void check(const Raster& raster, const RasterOptions& options) {
                                       ": needs positive sizes");
 }
 
-/// Draws the picture in bands of at most `rows` and hands on every one.
-void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& options, int rows,
+/// Draws the picture at once or in bands, and hands on every one. The tiles are the same ones in any case.
+void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& options, bool at_once,
                 const std::function<void(Frame&&, int)>& hand_on) {
   check(raster, options);
   const Camera& camera = checked_camera(scene, options.camera);
@@ -173,7 +174,8 @@ void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& o
   const GlDrawing drawing(parts, geometry, scenery);
   const int n = options.supersample;
   const int size = std::clamp(options.tile, 1, std::min(largest_tile(), largest_target) / n);
-  const int width = std::min(size, raster.width), height = std::min({size, raster.height, rows});
+  const int width = std::min(size, raster.width), height = std::min({size, raster.height, band_height(raster)});
+  const int rows = at_once ? raster.height : band_height(raster) / height * height;
   const bool two_pictures = n > 1 && options.layers != Layers::colours;
   GlTarget colours(n * width, n * height, two_pictures ? Layers::colours : options.layers);
   std::unique_ptr<GlTarget> centres;
@@ -181,6 +183,8 @@ void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& o
   const Job job{raster, options, drawing, projection_of(camera, raster), width, height, colours, centres.get()};
   for (int top = 0; top < raster.height; top += rows) {
     Frame frame = make_frame(raster.width, std::min(rows, raster.height - top), options.layers);
+    if (options.layers != Layers::colours)
+      frame.drawn_depth.assign(frame.object.size(), std::numeric_limits<float>::quiet_NaN());
     frame.renderer = context.driver();
     frame.subpixel_bits = subpixel_bits();
     frame.warnings = parts.warnings;
@@ -193,12 +197,12 @@ void draw_bands(const Scene& scene, const Raster& raster, const RasterOptions& o
 
 Frame rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options) {
   Frame whole = make_frame(raster.width, raster.height, Layers::colours);
-  draw_bands(scene, raster, options, raster.height, [&](Frame&& frame, int) { whole = std::move(frame); });
+  draw_bands(scene, raster, options, true, [&](Frame&& frame, int) { whole = std::move(frame); });
   return whole;
 }
 
 void rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options, const FrameSink& sink) {
-  draw_bands(scene, raster, options, band_height(raster), [&](Frame&& frame, int top) { sink(frame, top); });
+  draw_bands(scene, raster, options, false, [&](Frame&& frame, int top) { sink(frame, top); });
 }
 
 } // namespace domewarp

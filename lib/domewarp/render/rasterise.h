@@ -23,7 +23,7 @@ struct RasterOptions {
   std::size_t camera = 0;                                ///< which of the scene's cameras to draw through
   Layers layers = Layers::parity;
   int supersample = 1; ///< colours are the mean of supersample^2 samples on a regular grid; 1 to 16
-  int tile = 2048;     ///< pixels across the largest piece drawn at once (the driver may allow less)
+  int tile = 2048;     ///< pixels across the largest piece drawn at once
   Progress progress;   ///< stage "draw"
 };
 
@@ -32,13 +32,16 @@ struct RasterOptions {
 /// it). Blended triangles are drawn after the others, farthest first; ids and positions are those of the nearest
 /// fragment that is not invisible. Points and lines are one sample wide, unlit, and appear in the colours only. Depth is
 /// float32, 1 at the near plane, with room of 1e-6 beyond both. Vertices are rounded to the driver's subpixel grid of
-/// the whole picture, so that tiles fit but for what the driver clips at their borders. Shading: see shading.h, without shadows.
+/// the whole picture and clipped by its borders alone, so that ids and coverage are the same for tiles of any size, up to
+/// the largest viewport of the driver (16384 pixels or more); beyond that tiles are clipped one by one. What is interpolated
+/// differs by rounding between tiles of different sizes; which tiles are drawn follows from `raster` and `options` only.
+/// Shading: see shading.h, without shadows.
 /// @throws Error(input) when there is no camera or one that shows nothing, or the scene is inconsistent;
 ///         Error(usage) when the raster is no picture or `supersample` is out of range; Error(output) when no OpenGL 4.5
 ///         device answers or the scene does not fit into it.
 Frame rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options);
 
-/// The same picture of any size in bands, of which one is held at a time.
+/// The same picture, byte for byte, of any size in bands, of which one is held at a time.
 void rasterise(const Scene& scene, const Raster& raster, const RasterOptions& options, const FrameSink& sink);
 
 } // namespace domewarp

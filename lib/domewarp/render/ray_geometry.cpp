@@ -5,7 +5,8 @@
 // Embree works in float32 and its choice among hits near an edge depends on the instruction set. Here it gets triangles
 // that are slightly too large, so that it proposes every triangle the exact test could accept, and a filter function
 // decides in double precision. The filter keeps the best hit itself and leaves Embree's ray a little longer than
-// that, so that an equally near triangle is still proposed.
+// that, so that an equally near triangle is still proposed. Most proposals are hits beyond doubt (Gate): those are put
+// off until Embree is done, when only the nearest few are left and their corners are on their way from memory.
 #include "domewarp/render/ray_geometry.h"
 
 #include <algorithm>
@@ -62,26 +63,85 @@ auto rank(const RayHit& hit) {
 
 } // namespace
 
+namespace {
+
+/// All that a proposal of Embree's is judged by, in one place: it is looked up for every ray, and seldom cached.
+struct Facet {
+  Vec3 corners[3]; ///< eye space
+  std::uint32_t part = 0, triangle = 0;
+};
+
+/// What tells without a look at the facet that a proposal for a ray from the eye will be accepted.
+struct Gate {
+  float margin = std::numeric_limits<float>::infinity(); ///< least barycentric coordinate in Embree's triangle
+  float slack = 0;                                       ///< relative error of Embree's distance
+};
+
+Gate make_gate(const Facet& facet, const Look& look) {
+  const auto& v = facet.corners;
+  Gate gate{std::numeric_limits<float>::infinity(), static_cast<float>(distance_slack(v))};
+  if (look.alpha_mode != AlphaMode::opaque || (!look.double_sided && make_pyramid(v).volume >= 0)) return gate;
+  const double moved = inflation * std::max({largest(v[0]), largest(v[1]), largest(v[2])});
+  const double side = std::max({glm::distance(v[0], v[1]), glm::distance(v[1], v[2]), glm::distance(v[2], v[0])});
+  const double height = glm::length(glm::cross(v[1] - v[0], v[2] - v[0])) / side; // the least of three
+  if (height > 0) gate.margin = static_cast<float>(1e-4 + 1.5 * moved / height);
+  return gate;
+}
+
+} // namespace
+
 struct RayGeometry::Impl {
   const Parts* parts = nullptr;
-  std::vector<std::vector<Vec3>> corners; ///< eye space, by part and vertex
-  std::vector<std::uint32_t> part_of;     ///< by Embree primitive
-  std::vector<std::uint32_t> first_of;    ///< by part: its first Embree primitive
-  double scale = 1;                       ///< Embree's units per unit of eye space, a power of two
+  std::vector<Facet> facets;         ///< by Embree primitive
+  std::vector<Gate> gates;           ///< likewise
+  std::vector<std::size_t> first_of; ///< by part: its first Embree primitive
+  double scale = 1;                  ///< Embree's units per unit of eye space, a power of two
   Device device;
   RayScene scene;
 
-  void transform(const View& view);
   void number_triangles();
+  void transform(const View& view);
   void commit(const std::string& embree);
   void attach_triangles();
   void fill(float* vertices, unsigned* indices) const;
-  const Part& load(std::uint32_t primitive, Vec3 (&v)[3], std::uint32_t& triangle) const;
+  const Facet& facet(const RayHit& hit) const;
+  void trace(std::span<const Ray> rays, RayHit* hits, bool* doubtful) const;
+  template <unsigned width>
+  static void judge_proposals(const RTCFilterFunctionNArguments* args);
   static void filter_hits(const RTCFilterFunctionNArguments* args);
   static void filter_blocks(const RTCFilterFunctionNArguments* args);
 };
 
 namespace {
+
+/// Proposals for one ray that will be accepted, the nearest few.
+class Waiting {
+ public:
+  /// @param low, high of the distance, in Embree's units. @return false when there is no room
+  bool add(std::uint32_t primitive, float low, float high) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (entries_[i].low <= high) entries_[kept++] = entries_[i];
+    count_ = kept;
+    if (count_ == most) return false;
+    entries_[count_++] = {primitive, low};
+    return true;
+  }
+
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t i = 0; i < count_; ++i) visit(entries_[i].primitive);
+  }
+
+ private:
+  static constexpr std::size_t most = 4;
+  struct Entry {
+    std::uint32_t primitive;
+    float low;
+  };
+  Entry entries_[most];
+  std::size_t count_ = 0;
+};
 
 /// What the filters need to know about the rays under way. Embree hands back a pointer to the first member; a ray's id
 /// is its index.
@@ -89,7 +149,8 @@ struct RayQuery {
   RTCIntersectContext context;
   const void* geometry;
   const Ray* rays;
-  RayHit* best; ///< part null until something is found
+  RayHit* best;     ///< part null until something is found
+  Waiting* waiting; ///< by ray; null: every proposal is judged at once
 };
 
 struct BlockQuery {
@@ -109,47 +170,47 @@ bool is_there(const RayHit& hit) {
 
 } // namespace
 
-void RayGeometry::Impl::transform(const View& view) {
-  corners.resize(parts->parts.size());
-  parallel_each(corners.size(), 1, [&](std::size_t i) {
-    const Part& part = parts->parts[i];
-    corners[i].resize(part.primitive->positions.size());
-    for (std::size_t k = 0; k < corners[i].size(); ++k)
-      corners[i][k] = to_eye(view, to_world(part.world, part.primitive->positions[k]));
-  });
-  double reach = 0;
-  for (const std::vector<Vec3>& list : corners)
-    for (const Vec3& v : list)
-      if (is_finite(v)) reach = std::max(reach, largest(v));
-  if (reach > 0) scale = std::ldexp(1.0, largest_exponent - std::ilogb(reach));
-}
-
 void RayGeometry::Impl::number_triangles() {
   std::size_t count = 0;
-  for (const Part& part : parts->parts) count += part.primitive->indices.size() / 3;
+  for (const Part& part : parts->parts) {
+    first_of.push_back(count);
+    count += part.primitive->indices.size() / 3;
+  }
   if (count >= std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorCode::input, "scene: " + std::to_string(count) + " triangles are more than can be ray-traced");
-  part_of.reserve(count);
-  for (std::size_t i = 0; i < parts->parts.size(); ++i) {
-    first_of.push_back(static_cast<std::uint32_t>(part_of.size()));
-    part_of.insert(part_of.end(), parts->parts[i].primitive->indices.size() / 3, static_cast<std::uint32_t>(i));
-  }
+  facets.resize(count);
+  gates.resize(count);
 }
 
-/// Corners of one of Embree's primitives; `triangle` becomes its index in the part.
-const Part& RayGeometry::Impl::load(std::uint32_t primitive, Vec3 (&v)[3], std::uint32_t& triangle) const {
-  const std::uint32_t part = part_of[primitive];
-  triangle = primitive - first_of[part];
-  const std::uint32_t* index = &parts->parts[part].primitive->indices[3 * std::size_t(triangle)];
-  for (int k = 0; k < 3; ++k) v[k] = corners[part][index[k]];
-  return parts->parts[part];
+void RayGeometry::Impl::transform(const View& view) {
+  std::vector<double> reach(parts->parts.size(), 0);
+  parallel_each(parts->parts.size(), 1, [&](std::size_t i) {
+    const Part& part = parts->parts[i];
+    std::vector<Vec3> corners(part.primitive->positions.size());
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      corners[k] = to_eye(view, to_world(part.world, part.primitive->positions[k]));
+      if (is_finite(corners[k])) reach[i] = std::max(reach[i], largest(corners[k]));
+    }
+    for (std::size_t k = 0; k < part.primitive->indices.size() / 3; ++k) {
+      const std::uint32_t* index = &part.primitive->indices[3 * k];
+      facets[first_of[i] + k] = {{corners[index[0]], corners[index[1]], corners[index[2]]},
+                                 static_cast<std::uint32_t>(i),
+                                 static_cast<std::uint32_t>(k)};
+      gates[first_of[i] + k] = make_gate(facets[first_of[i] + k], *part.look);
+    }
+  });
+  const double largest_reach = reach.empty() ? 0 : *std::max_element(reach.begin(), reach.end());
+  if (largest_reach > 0) scale = std::ldexp(1.0, largest_exponent - std::ilogb(largest_reach));
+}
+
+const Facet& RayGeometry::Impl::facet(const RayHit& hit) const {
+  return facets[first_of[std::size_t(hit.part - parts->parts.data())] + hit.triangle];
 }
 
 void RayGeometry::Impl::fill(float* vertices, unsigned* indices) const {
-  parallel_each(part_of.size(), 4096, [&](std::size_t i) {
-    Vec3 v[3], inflated[3];
-    std::uint32_t triangle = 0;
-    load(static_cast<std::uint32_t>(i), v, triangle);
+  parallel_each(facets.size(), 4096, [&](std::size_t i) {
+    const auto& v = facets[i].corners;
+    Vec3 inflated[3];
     const double farthest = std::max({largest(v[0]), largest(v[1]), largest(v[2])});
     inflate(v, inflation * farthest, inflated);
     for (std::size_t k = 0; k < 9; ++k) vertices[9 * i + k] = static_cast<float>(scale * inflated[k / 3][int(k % 3)]);
@@ -160,16 +221,15 @@ void RayGeometry::Impl::fill(float* vertices, unsigned* indices) const {
 RayGeometry::RayGeometry(const Parts& parts, const View& view, const std::string& embree)
     : impl_(std::make_unique<Impl>()) {
   impl_->parts = &parts;
-  impl_->transform(view);
   impl_->number_triangles();
+  impl_->transform(view);
   impl_->commit(embree);
 }
 
 RayGeometry::~RayGeometry() = default;
 
 const Vec3& RayGeometry::corner(const RayHit& hit, int i) const {
-  const std::size_t part = std::size_t(hit.part - impl_->parts->parts.data());
-  return impl_->corners[part][hit.part->primitive->indices[3 * std::size_t(hit.triangle) + std::size_t(i)]];
+  return impl_->facet(hit).corners[i];
 }
 
 namespace {
@@ -184,48 +244,98 @@ bool is_same_crossing(const RayHit& a, const RayHit& b) {
          std::abs(a.distance - b.distance) <= 1e-12 * a.distance;
 }
 
-/// Judges one proposal of Embree's. @return the slack of an accepted hit, negative when it is refused.
-double judge(const Ray& ray, RayHit& best, const Part& part, std::uint32_t triangle, const Vec3 (&v)[3]) {
+/// Judges one proposal of Embree's and keeps it when it is the best so far.
+bool judge(const Ray& ray, RayHit& best, const Part& part, const Facet& facet) {
   Crossing crossing;
-  if (!intersect(ray.direction, v[0], v[1], v[2], crossing) || crossing.distance < ray.near) return -1;
-  if (!part.look->double_sided && crossing.det > 0) return -1;
-  RayHit hit{crossing.distance, rounded_distance(crossing.distance), &part, triangle, {}};
+  if (!intersect(ray.direction, make_pyramid(facet.corners), crossing) || crossing.distance < ray.near) return false;
+  if (!part.look->double_sided && crossing.det > 0) return false;
+  RayHit hit{crossing.distance, rounded_distance(crossing.distance), &part, facet.triangle, {}};
+  if (best.part && !(rank(hit) < rank(best))) return false;
   std::copy(crossing.weights, crossing.weights + 3, hit.weights);
-  if (best.part && !(rank(hit) < rank(best))) return -1;
-  if (ray.previous && (!(rank(*ray.previous) < rank(hit)) || is_same_crossing(*ray.previous, hit))) return -1;
-  if (!is_there(hit)) return -1;
+  if (ray.previous && (!(rank(*ray.previous) < rank(hit)) || is_same_crossing(*ray.previous, hit))) return false;
+  if (!is_there(hit)) return false;
   best = hit;
-  return crossing.slack;
+  return true;
 }
 
-bool blocks(const BlockQuery& query, const Part& part, std::uint32_t triangle, Vec3 (&v)[3]) {
+bool blocks(const BlockQuery& query, const Part& part, const Facet& facet) {
   if (part.look->alpha_mode == AlphaMode::blend) return false;
-  for (Vec3& corner : v) corner -= query.origin;
+  const auto& v = facet.corners;
   Crossing crossing;
-  if (!intersect(query.direction, v[0], v[1], v[2], crossing)) return false;
+  if (!intersect(query.direction, make_pyramid({v[0] - query.origin, v[1] - query.origin, v[2] - query.origin}), crossing))
+    return false;
   if (crossing.distance < query.near || crossing.distance > query.far) return false;
-  RayHit hit{crossing.distance, 0, &part, triangle, {}};
+  RayHit hit{crossing.distance, 0, &part, facet.triangle, {}};
   std::copy(crossing.weights, crossing.weights + 3, hit.weights);
   return is_there(hit);
 }
 
 } // namespace
 
-void RayGeometry::Impl::filter_hits(const RTCFilterFunctionNArguments* args) {
+namespace {
+
+/// What Embree proposes: one triangle to the lanes of a packet that pass it. The width is known when it is compiled,
+/// because this is called for every ray.
+template <unsigned width>
+struct Proposals {
+  const int* valid;
+  RTCRayN* ray;
+  RTCHitN* hit;
+
+  /// Calls visit(lane) for the lanes that take part, often one of 16.
+  template <typename Visit>
+  void for_each_lane(Visit&& visit) const {
+    constexpr unsigned group = std::min(width, 4u);
+    for (unsigned first = 0; first < width; first += group) {
+      int any = 0;
+      for (unsigned lane = first; lane < first + group; ++lane) any |= valid[lane];
+      for (unsigned lane = first; any && lane < first + group; ++lane)
+        if (valid[lane] == -1) visit(lane);
+    }
+  }
+
+  /// Puts a proposal off if it is a hit beyond doubt; the ray is cut a little behind it. @return whether it was
+  bool put_off(const RayQuery& query, unsigned lane, unsigned index, std::uint32_t primitive, const Gate& gate) const {
+    if (!query.waiting || query.rays[index].previous) return false;
+    const float u = RTCHitN_u(hit, width, lane), v = RTCHitN_v(hit, width, lane);
+    if (!(std::min({u, v, 1 - u - v}) > gate.margin)) return false;
+    const float distance = RTCRayN_tfar(ray, width, lane), slack = gate.slack;
+    if (!(distance * (1 - slack) > RTCRayN_tnear(ray, width, lane) * 1.02f)) return false;
+    if (!query.waiting[index].add(primitive, distance * (1 - slack), distance * (1 + slack))) return false;
+    RTCRayN_tfar(ray, width, lane) = distance * (1 + slack) * (1 + slack);
+    return true;
+  }
+};
+
+} // namespace
+
+template <unsigned width>
+void RayGeometry::Impl::judge_proposals(const RTCFilterFunctionNArguments* args) {
   const RayQuery& query = *reinterpret_cast<RayQuery*>(args->context);
   const Impl& impl = *static_cast<const Impl*>(query.geometry);
-  for (unsigned lane = 0; lane < args->N; ++lane) {
-    if (args->valid[lane] != -1) continue;
-    Vec3 v[3];
-    std::uint32_t triangle = 0;
-    const Part& part = impl.load(RTCHitN_primID(args->hit, args->N, lane), v, triangle);
-    const unsigned index = RTCRayN_id(args->ray, args->N, lane);
-    const double slack = judge(query.rays[index], query.best[index], part, triangle, v);
-    if (slack < 0)
-      args->valid[lane] = 0;
+  const Proposals<width> proposals{args->valid, args->ray, args->hit};
+  proposals.for_each_lane([&](unsigned lane) {
+    const std::uint32_t primitive = RTCHitN_primID(args->hit, width, lane);
+    const Facet& facet = impl.facets[primitive];
+    __builtin_prefetch(&facet);
+    __builtin_prefetch(reinterpret_cast<const char*>(&facet + 1) - 1);
+    const unsigned index = RTCRayN_id(args->ray, width, lane);
+    const Gate gate = impl.gates[primitive];
+    if (proposals.put_off(query, lane, index, primitive, gate)) return;
+    if (judge(query.rays[index], query.best[index], impl.parts->parts[facet.part], facet))
+      RTCRayN_tfar(args->ray, width, lane) =
+          static_cast<float>(query.best[index].distance * impl.scale * (1 + double(gate.slack)));
     else
-      RTCRayN_tfar(args->ray, args->N, lane) =
-          static_cast<float>(query.best[index].distance * impl.scale * (1 + slack));
+      args->valid[lane] = 0;
+  });
+}
+
+void RayGeometry::Impl::filter_hits(const RTCFilterFunctionNArguments* args) {
+  switch (args->N) {
+    case 1: return judge_proposals<1>(args);
+    case 4: return judge_proposals<4>(args);
+    case 8: return judge_proposals<8>(args);
+    case 16: return judge_proposals<16>(args);
   }
 }
 
@@ -233,18 +343,16 @@ void RayGeometry::Impl::filter_blocks(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const BlockQuery& query = *reinterpret_cast<BlockQuery*>(args->context);
   const Impl& impl = *static_cast<const Impl*>(query.geometry);
-  Vec3 v[3];
-  std::uint32_t triangle = 0;
-  const Part& part = impl.load(RTCHitN_primID(args->hit, args->N, 0), v, triangle);
-  if (!blocks(query, part, triangle, v)) args->valid[0] = 0;
+  const Facet& facet = impl.facets[RTCHitN_primID(args->hit, args->N, 0)];
+  if (!blocks(query, impl.parts->parts[facet.part], facet)) args->valid[0] = 0;
 }
 
 void RayGeometry::Impl::attach_triangles() {
   const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcAttachGeometry(scene.get(), mesh);
   rtcReleaseGeometry(mesh);
-  void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * part_of.size());
-  void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, part_of.size());
+  void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * facets.size());
+  void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, facets.size());
   if (!vertices || !indices) throw std::bad_alloc();
   fill(static_cast<float*>(vertices), static_cast<unsigned*>(indices));
   rtcSetGeometryIntersectFilterFunction(mesh, filter_hits);
@@ -258,7 +366,7 @@ void RayGeometry::Impl::commit(const std::string& embree) {
   if (!device) throw Error(ErrorCode::output, "Embree: cannot be started");
   scene.reset(rtcNewScene(device.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  if (!part_of.empty()) attach_triangles();
+  if (!facets.empty()) attach_triangles();
   rtcCommitScene(scene.get());
   const RTCError error = rtcGetDeviceError(device.get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -267,13 +375,17 @@ void RayGeometry::Impl::commit(const std::string& embree) {
                 "Embree: cannot build its tree (error " + std::to_string(static_cast<int>(error)) + ")");
 }
 
-void RayGeometry::first_hits(std::span<const Ray> rays, RayHit* hits) const {
+/// @param doubtful where a proposal was put off that turned out to be no hit, so that what lies behind may be missing;
+///        null: none is put off
+void RayGeometry::Impl::trace(std::span<const Ray> rays, RayHit* hits, bool* doubtful) const {
   RayQuery query{};
+  Waiting waiting[packet_size];
   rtcInitIntersectContext(&query.context);
   query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  query.geometry = impl_.get();
+  query.geometry = this;
   query.rays = rays.data();
   query.best = hits;
+  query.waiting = doubtful ? waiting : nullptr;
   alignas(64) RTCRayHit16 packet{};
   alignas(64) int valid[packet_size] = {};
   for (unsigned i = 0; i < rays.size(); ++i) {
@@ -285,13 +397,30 @@ void RayGeometry::first_hits(std::span<const Ray> rays, RayHit* hits) const {
     packet.ray.dir_z[i] = static_cast<float>(ray.direction.z);
     // One hundredth is the largest slack, so no hit that float32 puts too near is lost.
     const double nearest = std::max(ray.near, ray.previous ? ray.previous->distance : 0.0);
-    packet.ray.tnear[i] = static_cast<float>(0.99 * impl_->scale * nearest);
+    packet.ray.tnear[i] = static_cast<float>(0.99 * scale * nearest);
     packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
     packet.ray.mask[i] = ~0u;
     packet.ray.id[i] = i;
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   }
-  rtcIntersect16(valid, impl_->scene.get(), &query.context, &packet);
+  rtcIntersect16(valid, scene.get(), &query.context, &packet);
+  for (std::size_t i = 0; doubtful && i < rays.size(); ++i)
+    waiting[i].for_each([&](std::uint32_t primitive) {
+      const Facet& facet = facets[primitive];
+      RayHit other;
+      RayHit& hit = hits[i].part ? other : hits[i];
+      if (!judge(rays[i], hit, parts->parts[facet.part], facet))
+        doubtful[i] = true;
+      else if (rank(hit) < rank(hits[i]))
+        hits[i] = hit;
+    });
+}
+
+void RayGeometry::first_hits(std::span<const Ray> rays, RayHit* hits) const {
+  bool doubtful[packet_size] = {};
+  impl_->trace(rays, hits, doubtful);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (doubtful[i]) impl_->trace(rays.subspan(i, 1), hits + i, nullptr);
 }
 
 bool RayGeometry::is_blocked(const Vec3& origin, const Vec3& direction, double near, double far) const {
@@ -339,9 +468,11 @@ void RayGeometry::triangles_at(const Vec3& point, double tolerance, std::vector<
   PointLookup lookup{this, &hits, point, tolerance};
   const RTCPointQueryFunction visit = [](RTCPointQueryFunctionArguments* args) {
     PointLookup& wanted = *static_cast<PointLookup*>(args->userPtr);
-    Vec3 v[3];
+    const Impl& impl = *wanted.geometry->impl_;
+    const auto& [v, part, triangle] = impl.facets[args->primID];
     RayHit hit;
-    hit.part = &wanted.geometry->impl_->load(args->primID, v, hit.triangle);
+    hit.part = &impl.parts->parts[part];
+    hit.triangle = triangle;
     const bool from_behind = glm::dot(glm::cross(v[1] - v[0], v[2] - v[0]), v[0]) > 0;
     if (from_behind && !hit.part->look->double_sided) return false;
     const auto weights = weights_near(v, wanted.point, wanted.tolerance);
@@ -354,8 +485,7 @@ void RayGeometry::triangles_at(const Vec3& point, double tolerance, std::vector<
 }
 
 std::optional<std::array<double, 3>> RayGeometry::weights_at(const RayHit& hit, const Vec3& point, double tolerance) const {
-  const Vec3 v[3] = {corner(hit, 0), corner(hit, 1), corner(hit, 2)};
-  return weights_near(v, point, tolerance);
+  return weights_near(impl_->facet(hit).corners, point, tolerance);
 }
 
 Vec4 interpolate(const Attribute* attribute, const RayHit& hit, const Vec4& fallback) {

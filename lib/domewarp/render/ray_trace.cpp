@@ -2,6 +2,7 @@
 #include "domewarp/render/ray_trace.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -25,6 +26,8 @@ namespace {
 
 constexpr int tile_size = 32;
 constexpr std::size_t packet_size = RayGeometry::packet_size;
+constexpr int packet_side = 4; ///< pixels that are traced together: a square goes the same way better than a row
+static_assert(packet_side * packet_side == packet_size);
 constexpr int most_samples = 4096;
 
 struct Job {
@@ -78,26 +81,27 @@ std::uint16_t ray_count(unsigned rays) {
   return static_cast<std::uint16_t>(std::min(rays, 65535u));
 }
 
-/// Up to a packet of neighbouring pixels of one row, each through its centre.
-void trace_centres(const Job& job, Band& band, int left, int right, int row) {
+/// A packet of neighbouring pixels, each through its centre.
+void trace_centres(const Job& job, Band& band, int left, int right, int top, int bottom) {
   Vec3 directions[packet_size];
   RaySample samples[packet_size];
-  int columns[packet_size];
+  std::array<int, 2> pixels[packet_size]; // column, row
   std::size_t count = 0;
-  const bool kept = row >= band.top && row < band.top + band.frame.height;
-  for (int column = left; column < right; ++column)
-    if (unproject(job.surface, pixel_centre(job.raster, column, row), directions[count]))
-      columns[count++] = column;
-    else if (kept)
-      store_colour(job, band.frame, std::size_t(row - band.top) * std::size_t(job.raster.width) + std::size_t(column),
-                   Vec4(0));
+  const std::size_t width = std::size_t(job.raster.width);
+  const auto is_kept = [&](int row) { return row >= band.top && row < band.top + band.frame.height; };
+  const auto index = [&](int column, int row, int first) { return std::size_t(row - first) * width + std::size_t(column); };
+  for (int row = top; row < bottom; ++row)
+    for (int column = left; column < right; ++column)
+      if (unproject(job.surface, pixel_centre(job.raster, column, row), directions[count]))
+        pixels[count++] = {column, row};
+      else if (is_kept(row))
+        store_colour(job, band.frame, index(column, row, band.top), Vec4(0));
   trace(job.world, {directions, count}, samples);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t width = std::size_t(job.raster.width), column = std::size_t(columns[i]);
-    if (!band.around.empty())
-      band.around[std::size_t(row - band.first) * width + column] = contrast_of(job, samples[i]);
-    if (!kept) continue;
-    const std::size_t pixel = std::size_t(row - band.top) * width + column;
+    const auto [column, row] = pixels[i];
+    if (!band.around.empty()) band.around[index(column, row, band.first)] = contrast_of(job, samples[i]);
+    if (!is_kept(row)) continue;
+    const std::size_t pixel = index(column, row, band.top);
     store_colour(job, band.frame, pixel, samples[i].light);
     store_hit(job, band.frame, pixel, samples[i].first);
     if (job.options.count_rays) band.frame.rays[pixel] = ray_count(samples[i].rays);
@@ -169,9 +173,9 @@ void for_each_tile(const Job& job, const char* stage, int first, int last, Visit
 
 void trace_band(const Job& job, Band& band) {
   for_each_tile(job, "trace", band.first, band.last, [&](int left, int right, int top, int bottom) {
-    for (int row = top; row < bottom; ++row)
-      for (int column = left; column < right; column += int(packet_size))
-        trace_centres(job, band, column, std::min(column + int(packet_size), right), row);
+    for (int row = top; row < bottom; row += packet_side)
+      for (int column = left; column < right; column += packet_side)
+        trace_centres(job, band, column, std::min(column + packet_side, right), row, std::min(row + packet_side, bottom));
   });
   if (job.options.samples == 1) return;
   const int bottom_row = band.top + band.frame.height;

@@ -72,6 +72,7 @@ Screen make_screen(const Scene& scene, const Raster& raster) {
   const Lens lens = lens_of(scene, raster);
   Screen screen;
   screen.has_source = true;
+  screen.perspective = lens.perspective;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     screen.first.push_back(screen.triangles.size());
     std::uint32_t number = 0;

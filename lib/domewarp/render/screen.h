@@ -30,6 +30,7 @@ struct Screen {
   std::vector<ScreenTriangle> triangles; ///< by object and triangle
   std::vector<std::size_t> first;        ///< by object - 1: its first entry in `triangles`; one more at the end
   bool has_source = false;               ///< every primitive says where it came from
+  bool perspective = true;               ///< its camera
 };
 
 /// @throws Error(input) when there is no camera

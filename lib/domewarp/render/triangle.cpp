@@ -33,19 +33,11 @@ void inflate(const Vec3 (&v)[3], double margin, Vec3 (&out)[3]) {
   }
 }
 
-bool intersect(const Vec3& d, const Vec3& v0, const Vec3& v1, const Vec3& v2, Crossing& crossing) {
-  const Vec3 c0 = glm::cross(v1, v2), c1 = glm::cross(v2, v0), c2 = glm::cross(v0, v1);
-  const double w0 = glm::dot(d, c0), w1 = glm::dot(d, c1), w2 = glm::dot(d, c2);
-  if (!((w0 >= 0 && w1 >= 0 && w2 >= 0) || (w0 <= 0 && w1 <= 0 && w2 <= 0))) return false;
-  const double det = w0 + w1 + w2;
-  const double volume = glm::dot(v0, c0);
-  const double distance = volume / det;
-  if (!(distance > 0) || !std::isfinite(distance)) return false;
-  crossing = {distance, det, {w0 / det, w1 / det, w2 / det}, 0};
-  const double reach = std::max({largest(v0), largest(v1), largest(v2)});
-  const double height = std::abs(volume) / glm::length(c0 + c1 + c2);
-  crossing.slack = std::min(4e-6 + 2e-6 * reach / height, 1e-2);
-  return true;
+double distance_slack(const Vec3 (&v)[3]) {
+  const Pyramid pyramid = make_pyramid(v);
+  const double reach = std::max({largest(v[0]), largest(v[1]), largest(v[2])});
+  const double height = std::abs(pyramid.volume) / glm::length(pyramid.sides[0] + pyramid.sides[1] + pyramid.sides[2]);
+  return std::min(4e-6 + 2e-6 * reach / height, 1e-2);
 }
 
 std::optional<std::array<double, 3>> weights_near(const Vec3 (&v)[3], const Vec3& p, double tolerance) {

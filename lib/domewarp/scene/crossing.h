@@ -15,6 +15,7 @@ struct Crossing {
   std::uint32_t object = 0;   ///< instance index + 1
   std::uint32_t triangle = 0; ///< in the instance, those of all its triangle primitives counted
   double weights[3] = {};     ///< barycentric, sum 1
+  std::uint32_t piece = 0;    ///< of connected surface, where somebody has set it
   Vec3 normal = Vec3(0);      ///< unit, eye space, on the side where the triangle is counter-clockwise
   bool front = false;         ///< that side is the one that is met
 };

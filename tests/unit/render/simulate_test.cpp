@@ -116,6 +116,49 @@ TEST(Simulate, EyeSeesTheSceneItself) {
   }
 }
 
+/// Where the light of every row first passes the middle between dark and bright, from left to right.
+std::vector<Vec2> edge_points(const Pixels& pixels) {
+  std::vector<Vec2> points;
+  for (int row = 0; row < pixels.height; ++row)
+    for (int column = 1; column < pixels.width; ++column) {
+      const std::uint8_t* p = &pixels.rgba[4 * std::size_t(row * pixels.width + column)];
+      if (p[-4] >= 140 || p[0] < 140) continue;
+      points.push_back({column - 0.5 + (140.0 - p[-4]) / (p[0] - p[-4]), row + 0.5});
+      break;
+    }
+  return points;
+}
+
+/// The largest distance from the straight line that fits best, px.
+double bend(const std::vector<Vec2>& points) {
+  double n = 0, y = 0, yy = 0, x = 0, xy = 0;
+  for (const Vec2& p : points) ++n, y += p.y, yy += p.y * p.y, x += p.x, xy += p.x * p.y;
+  const double slope = (n * xy - x * y) / (n * yy - y * y), start = (x - slope * y) / n;
+  double most = 0;
+  for (const Vec2& p : points) most = std::max(most, std::abs(p.x - start - slope * p.y) / std::hypot(1, slope));
+  return most;
+}
+
+TEST(Simulate, StraightEdgesAreStraight) {
+  Scene scene = test::make_room();
+  for (Material& material : scene.materials) material.base_color = Vec4(0.02, 0.02, 0.02, 1), material.unlit = true;
+  const int white = test::add_material(scene, Vec4(0.9, 0.9, 0.9, 1), AlphaMode::opaque, true);
+  scene.materials.back().unlit = true;
+  test::add(scene, test::make_quad({0.2, -1, -0.9}, {0.7, 0, 0}, {-0.1, 2, 0.2}, white)); // its left edge leans
+  const EyeCamera camera = looking(25, 0);
+  for (const Display& display : {curve("1-r^2"), curve("3-sqrt(4+6*r^2)", 5), curve("1-r^2", 1)}) {
+    const Pixels picture = trace(scene, View{}, surface_of(display), {1200, 1200});
+    const Pixels seen = simulate(picture, surface_of(display), camera, {});
+    const std::vector<Vec2> edge = edge_points(seen);
+    ASSERT_GE(edge.size(), 290u) << display.options.curve;
+    EXPECT_LE(bend(edge), 0.35) << display.options.curve; // pixels of both pictures
+    EXPECT_GT(bend(edge_points(picture)), 3) << "it is curved in the picture, or this test shows nothing";
+    Display wrong = display;
+    wrong.options.projector = display.options.projector.value_or(1) * 0.4;
+    EXPECT_GT(bend(edge_points(simulate(picture, surface_of(wrong), camera, {}))), 0.7) << "a projector elsewhere bends it";
+  }
+}
+
 TEST(Simulate, WrongProjectorOrShiftedPictureIsSeen) {
   const Scene scene = make_boards();
   const Display display = curve("3-sqrt(4+6*r^2)", 5);
