@@ -86,7 +86,7 @@ void write_page(const std::string& path, const Arguments& arguments, const Compa
 }
 
 std::string at_seams(std::size_t count) {
-  return count == 0 ? "" : " (" + std::to_string(count) + " where pieces abut)";
+  return count == 0 ? "" : " (" + std::to_string(count) + " where the outlines of two pieces meet)";
 }
 
 std::string to_text(const CompareReport& report) {

@@ -119,7 +119,7 @@ void add_curves(const Studio& studio, std::vector<Figure>& figures) {
   const char* sections[] = {"21e", "21f", "21g", "21h"};
   const char* captions[] = {"cubic", "folded, rays", "spherical", "parabolic"};
   for (int i = 0; i < 4; ++i) figures.push_back({pictures[i], captions[i], panorama(studio, studio.scene("toys"), curve(curves[i]), studio.samples)});
-  for (int i = 0; i < 4; ++i) figures.push_back({sections[i], curves[i], cross_section(curve(curves[i]), studio.raster, studio.raster)});
+  for (int i = 0; i < 4; ++i) figures.push_back({sections[i], "its curve", cross_section(curve(curves[i]), studio.raster, studio.raster)});
 }
 
 } // namespace

@@ -175,9 +175,6 @@ void count_verdicts(const Pictures& p, CompareReport& report) {
     report.coverage.warped += p.warped.object[i] != 0;
     report.coverage.both += p.reference.object[i] != 0 && p.warped.object[i] != 0;
     ++count[static_cast<std::size_t>(report.verdicts[i])];
-    constexpr std::size_t most_flaws = 32;
-    if (report.verdicts[i] >= Verdict::pinhole && report.flaws.size() < most_flaws)
-      report.flaws.push_back({static_cast<int>(i % std::size_t(p.reference.width)), static_cast<int>(i / std::size_t(p.reference.width))});
   }
   const auto of = [&count](Verdict verdict) { return count[static_cast<std::size_t>(verdict)]; };
   report.pinholes_at_seams = of(Verdict::seam_pinhole);
@@ -186,6 +183,24 @@ void count_verdicts(const Pictures& p, CompareReport& report) {
   report.surface_mismatch = of(Verdict::mismatch) + report.surface_mismatch_at_seams;
   report.outline = of(Verdict::outline);
   report.depth_ties = of(Verdict::depth_tie);
+}
+
+/// Lists the first pixels that is_flaw() says yes to.
+template <typename IsFlaw>
+void list_flaws(int width, std::size_t pixels, IsFlaw&& is_flaw, CompareReport& report) {
+  constexpr int most = 32;
+  int listed = 0;
+  for (std::size_t i = 0; i < pixels && listed < most; ++i)
+    if (is_flaw(i)) report.flaws.push_back({static_cast<int>(i % std::size_t(width)), static_cast<int>(i / std::size_t(width))}), ++listed;
+}
+
+void list_flaws(int width, CompareReport& report) {
+  const auto verdict_is = [&report](Verdict a, Verdict b) {
+    return [&report, a, b](std::size_t i) { return report.verdicts[i] == a || report.verdicts[i] == b; };
+  };
+  list_flaws(width, report.verdicts.size(), verdict_is(Verdict::pinhole, Verdict::seam_pinhole), report);
+  list_flaws(width, report.verdicts.size(), verdict_is(Verdict::mismatch, Verdict::seam_mismatch), report);
+  list_flaws(width, report.covers.size(), [&report](std::size_t i) { return report.covers[i] > 1; }, report);
 }
 
 /// A surface that covers a pixel twice is an overlap unless the scene has as many triangles there.
@@ -277,6 +292,7 @@ CompareReport compare_frames(const Frame& reference, const Frame& warped, const 
   judge_rows(pictures, screen, judge, surface, map, raster, report);
   count_verdicts(pictures, report);
   find_overlaps(pictures, screen, judge, options.depth_bound, report);
+  list_flaws(raster.width, report);
   summarise_displacement(raster.width, report);
   summarise_depth(raster.width, report);
   summarise_colours(pictures, report);

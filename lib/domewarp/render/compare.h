@@ -52,9 +52,9 @@ struct DepthReport {
 struct CompareReport {
   CoverageReport coverage;
   std::size_t pinholes = 0; ///< uncovered in the warped picture, though the scene covers everything within the bound
-  std::size_t pinholes_at_seams = 0; ///< those of them where every connected piece of surface ends within the bound: they abut
+  std::size_t pinholes_at_seams = 0; ///< those of them where every connected piece of surface ends within the bound: the outlines of two meet
   std::optional<std::size_t> overlaps; ///< pixels covered more often than the scene has triangles there; none without source positions
-  std::vector<std::array<int, 2>> flaws; ///< column and row of the first pinholes and mismatches, 32 at most
+  std::vector<std::array<int, 2>> flaws; ///< column and row of the first pinholes, mismatches and overlaps, 32 of each kind at most
   std::size_t surface_mismatch = 0; ///< a surface that nothing within the bound lets be seen there
   std::size_t surface_mismatch_at_seams = 0; ///< those of them where every connected piece that hides it ends within the bound
   std::size_t outline = 0;    ///< differ in coverage or surface at an outline, by no more than the bound

@@ -91,7 +91,7 @@ class Table {
 
 const char* judge(bool good) { return good ? "good" : "bad"; }
 
-std::string at_seams(std::size_t count) { return count ? std::to_string(count) + " of them where pieces abut" : ""; }
+std::string at_seams(std::size_t count) { return count ? std::to_string(count) + " of them where the outlines of two pieces meet" : ""; }
 
 std::string figures(const ComparePage& page, const CompareReport& report) {
   Table table;

@@ -17,7 +17,7 @@ enum class Verdict : std::uint8_t {
   depth_tie,     ///< another one, but the two are nearer to each other than drawn depths are exact
   outline,       ///< another one or none, next to an outline or the picture's rim, which may be displaced by that much
   pinhole,       ///< nothing is drawn, though the scene covers everything within the bound
-  seam_pinhole,  ///< the same, where every piece of connected surface in the pixel ends within the bound: they abut there
+  seam_pinhole,  ///< the same, where every piece of connected surface in the pixel ends within the bound: the outlines of two meet there
   mismatch,      ///< a surface that is hidden there, or none of the scene
   seam_mismatch, ///< a hidden surface shows, where every piece of connected surface that hides it ends within the bound
 };
