@@ -318,7 +318,9 @@ bool MapLayout(const FloatTable& table, const ConstPoints& in, const Points& out
 template <int pieces, int degree, bool fine>
 bool MapWith(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
   const bool behind = table.reaches_behind();
-  if (output == BatchOutput::image) return behind ? MapLayout<pieces, degree, fine, true, false>(table, in, out) : MapLayout<pieces, degree, fine, false, false>(table, in, out);
+  if (output == BatchOutput::image)
+    return behind ? MapLayout<pieces, degree, fine, true, false>(table, in, out)
+                  : MapLayout<pieces, degree, fine, false, false>(table, in, out);
   return behind ? MapLayout<pieces, degree, fine, true, true>(table, in, out) : MapLayout<pieces, degree, fine, false, true>(table, in, out);
 }
 

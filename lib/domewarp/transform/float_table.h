@@ -12,7 +12,8 @@ namespace domewarp {
 ///
 /// Index: u = n / (n + alpha o) with tan(theta / 2) = n / o, analytic over all directions; piece round(u scale), position
 /// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q),
-/// Q = sin(theta) / R(theta). On the tangent line x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
+/// Q = sin(theta) / R(theta). On the tangent line x' = x / (beyond_z z + beyond_r r), which is linear even with a
+/// projector, and a blind point is put at `blind_radius`.
 struct FloatTable {
   static constexpr int most_powers = 8, most_pieces = 32;
   static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
