@@ -154,6 +154,7 @@ Comparison compare(const Arguments& arguments) {
   RasterOptions raster;
   raster.unlit = record.unlit;
   c.warped = rasterise(warped, record.raster, raster);
+  if (record.surface.extension_deg > 0) clear_beyond(c.warped, surface.r_max()); // no ray sees what lies there
   c.screen = make_screen(warped, record.raster);
   const ExactRays exact(scene, record.view);
   const CrossingsAlong crossings =

@@ -187,6 +187,8 @@ void add_quality_options(CLI::App& app, RefineOptions& refine) {
   add_no_skip_option(*group, refine.skip);
 }
 
+constexpr double default_extension_deg = 10;
+
 void add_output_options(CLI::App& app, ConvertOptions& options) {
   auto* group = app.add_option_group("Output");
   add_choice<Projection>(*group, "--projection", "Camera of the written file (default perspective)",
@@ -196,6 +198,13 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
                       {{"keep", Shading::keep}, {"unlit", Shading::unlit}, {"bake", Shading::bake}},
                       [&options](Shading shading) { options.shading = shading; });
   group->add_flag_callback("--unlit", [&options] { options.shading = Shading::unlit; }, "The same as --shading unlit: mark every material KHR_materials_unlit");
+  add_choice<bool>(*group, "--boundary", "clip: end at r_max; tangent: go on beyond it along the surface's tangent, for programs that clip themselves (default clip)",
+                   {{"clip", false}, {"tangent", true}}, [&options](bool is_tangent) {
+                     double& extension = options.surface.extension_deg;
+                     extension = is_tangent ? (extension > 0 ? extension : default_extension_deg) : 0;
+                   });
+  add(*group, "--extension", "How far --boundary tangent goes on, degrees (default 10); less where blind directions are near", "DEG",
+      [&options](const std::string& text) { options.surface.extension_deg = parse_positive("--extension", text); });
   group->add_flag("--cull-hidden", options.cull_hidden,
                   "Leave out triangles that no ray at twice the picture's density reaches within a pixel (opens edges: inspect --strict will say so)");
   group->add_flag("--source-attributes", options.refine.source_attributes, "Add _SOURCE_POSITION, where each vertex came from (eye space)");

@@ -57,6 +57,9 @@ refuses 1 --time convert "$scene" -o out.glb --curve '1-r^2' --time 1 --frames 0
 refuses 1 --shard batch "$scene" --out out --lens equidistant --shard 3/2
 refuses 1 --jobs batch "$scene" --out out --lens equidistant --jobs 0
 refuses 1 --max-memory batch "$scene" --out out --lens equidistant --max-memory 1
+refuses 1 --boundary convert "$scene" -o out.glb --curve '1-r^2' --boundary open
+refuses 1 --extension convert "$scene" -o out.glb --curve '1-r^2' --extension 200
+refuses 1 --cull-hidden convert "$scene" -o out.glb --curve '1-r^2' --boundary tangent --cull-hidden
 refuses 4 nowhere convert "$scene" -o nowhere/out.glb --curve '1-r^2' --quiet
 printf '{"scenes": [\n {"input": "a.glb", "tolerance": -1}]}' >in_jobs.json
 refuses 2 in_jobs.json:2:21 batch in_jobs.json --out out --lens equidistant
@@ -170,6 +173,19 @@ done
 same "batch after kill -9" 0 $?
 check "a killed run resumes to the same files and leaves none" diff -r -x .domewarp many/sub killed/sub
 rm -rf many shards killed
+
+# Beyond r_max along the tangent: more triangles, and as sound as without.
+"$domewarp" convert "$scene" -o clipped.glb --lens equidistant --rmax 0.6 --size 512x512 --quiet --report clipped.json
+"$domewarp" convert "$scene" -o tangent.glb --lens equidistant --rmax 0.6 --boundary tangent --extension 15 --size 512x512 --source-attributes --quiet --report tangent.json
+check "--boundary tangent draws more" [ "$(grep -m1 -o '"output": *[0-9]*' tangent.json | grep -o '[0-9]*$')" -gt "$(grep -m1 -o '"output": *[0-9]*' clipped.json | grep -o '[0-9]*$')" ]
+check "--extension is reported" grep -q '"extension_deg": *15' tangent.json
+"$domewarp" inspect tangent.glb --source "$scene" --strict >/dev/null
+same "inspect --strict of a file with an extension" 0 $?
+"$domewarp" compare "$scene" tangent.glb --max-displacement 0.51 --max-pinholes 0 >stdout
+same "compare leaves the extension out" 0 $?
+"$domewarp" convert "$scene" -o vertical.glb --curve 'sqrt(1-r^2)' --boundary tangent --size 512x512 >stdout 2>stderr
+check "a vertical tangent leads nowhere" grep -q 'tangent is vertical' stderr
+rm -f clipped.* tangent.* vertical.*
 
 # The generator still makes the committed scenes, byte for byte.
 "$domewarp" scenes --out scenes >/dev/null

@@ -132,7 +132,7 @@ private:
     const Vec3 p = point_of(face, i);
     std::vector<std::size_t> expected; // branches
     for (std::size_t b = 0; b < picture_.surface.branches().size(); ++b) {
-      if (is_shown(picture_, b, p, boundary_margin)) expected.push_back(b);
+      if (is_shown(picture_, b, p, boundary_margin) && !is_near_rim(picture_, b, p)) expected.push_back(b);
       else if (is_shown(picture_, b, p, -boundary_margin)) return;
     }
     if (expected.empty()) return;
@@ -167,7 +167,7 @@ private:
   /// beside the picture, or because the chords of a rim are straight in space.
   bool is_clipped(const Corners& corners, std::size_t branch) const {
     return std::all_of(corners.begin(), corners.end(), [&](std::size_t v) {
-      return inside_angles(picture_.surface.branches()[branch], provenance_.source[v]) >= -boundary_margin;
+      return inside_angles(picture_.map.branches[branch].branch(), provenance_.source[v]) >= -boundary_margin;
     });
   }
 

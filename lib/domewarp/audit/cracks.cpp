@@ -95,7 +95,8 @@ private:
 
   bool is_rim(const Ends& edge) const {
     return picture_ != nullptr && std::all_of(edge.begin(), edge.end(), [&](std::uint32_t v) {
-             return is_at_boundary(*picture_, provenance_.branch[v], source(v), 4 * rounding_.relative());
+             return is_at_boundary(*picture_, provenance_.branch[v], source(v), 4 * rounding_.relative()) ||
+                    is_near_rim(*picture_, provenance_.branch[v], source(v));
            });
   }
 

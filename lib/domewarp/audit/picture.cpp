@@ -37,14 +37,19 @@ Vec3 source_of(const Picture& picture, const Vec3& position) {
 }
 
 bool is_at_boundary(const Picture& picture, std::size_t branch, const Vec3& eye, double margin) {
-  const Branch& b = picture.surface.branches()[branch];
+  const Branch& b = picture.map.branches[branch].branch();
   const double radius = glm::length(picture.map.branches[branch].image(eye));
   return std::abs(inside_angles(b, eye)) <= margin || std::abs(inside_radii(b, radius)) <= margin ||
          std::abs(glm::length(eye) - picture.near) <= margin * picture.near;
 }
 
+bool is_near_rim(const Picture& picture, std::size_t branch, const Vec3& eye) {
+  const BranchMap& map = picture.map.branches[branch];
+  return std::abs(inside_radii(map.branch(), glm::length(map.image(eye)))) <= picture.rim_px * pixel_size(picture.raster);
+}
+
 bool is_shown(const Picture& picture, std::size_t branch, const Vec3& eye, double margin) {
-  if (inside_angles(picture.surface.branches()[branch], eye) < margin) return false;
+  if (inside_angles(picture.map.branches[branch].branch(), eye) < margin) return false;
   if (glm::length(eye) < picture.near * (1 + margin)) return false;
   const Vec2 image = picture.map.branches[branch].image(eye);
   return std::abs(image.x) < aspect(picture.raster) - margin && std::abs(image.y) < 1 - margin;

@@ -15,6 +15,7 @@ struct Picture {
   Raster raster;
   bool perspective = true;       ///< else orthographic
   double near = 0;               ///< nothing nearer to the eye was drawn
+  double rim_px = 1;             ///< by how much a rim may be flatter than its circle, for its chords
 };
 
 /// Where a written position appears, image units.
@@ -25,6 +26,9 @@ Vec3 source_of(const Picture& picture, const Vec3& position);
 
 /// Whether a point is within `margin` (radians, image units, or relative distance) of anything that clips the branch.
 bool is_at_boundary(const Picture& picture, std::size_t branch, const Vec3& eye, double margin);
+
+/// Whether a point appears within `rim_px` of a circle that ends the branch's image.
+bool is_near_rim(const Picture& picture, std::size_t branch, const Vec3& eye);
 
 /// Smallest distance (radians) of a direction from an end of the branch that clips, positive inside.
 double inside_angles(const Branch& branch, const Vec3& eye);

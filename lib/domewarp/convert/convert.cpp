@@ -2,6 +2,7 @@
 #include "domewarp/convert/convert.h"
 
 #include <chrono>
+#include <numbers>
 #include <optional>
 #include <sstream>
 
@@ -69,6 +70,17 @@ void warn_of_lines(const RefineOptions& options, ConvertReport& report) {
                             " point(s): --subdivide isotropic divides triangles only");
 }
 
+void note_extension(const ConvertOptions& options, const Display& display, ConvertReport& report) {
+  const double asked = options.surface.extension_deg;
+  if (asked == 0) return;
+  if (options.cull_hidden) throw Error(ErrorCode::usage, "--cull-hidden: cannot be used with --boundary tangent, since no ray sees what lies beyond r_max");
+  const Branch &clipped = display.surface.branches().back(), &drawn = display.map.branches.back().branch();
+  report.extension_deg = (drawn.theta_high - drawn.theta_low - clipped.theta_high + clipped.theta_low) * 180 / std::numbers::pi;
+  if (report.extension_deg < asked * (1 - 1e-9))
+    report.warnings.push_back("--boundary tangent goes on for " + std::to_string(report.extension_deg) + " of " + std::to_string(asked) +
+                              " degrees: " + (report.extension_deg == 0 ? "at r_max the surface folds back or its tangent is vertical" : "blind directions are near"));
+}
+
 } // namespace
 
 std::size_t expected_points(const Scene& scene, const ConvertOptions& options) {
@@ -96,6 +108,7 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   report.dropped_extensions = scene.dropped_extensions;
   report.view = resolve_view(scene, options.view);
   note_display(display, report);
+  note_extension(options, display, report);
   report.expected_points = expected_points(scene, options);
 
   tell(progress, "refine");

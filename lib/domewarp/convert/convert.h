@@ -43,6 +43,7 @@ struct ConvertReport {
   double r_max = 0;
   RadiusLimit r_max_limit = RadiusLimit::screen;
   std::vector<Branch> branches;
+  double extension_deg = 0;     ///< how far --boundary tangent goes on beyond r_max
   std::vector<TableReport> tables; ///< one per branch
   std::size_t expected_points = 0; ///< what Method::automatic went by
   std::vector<std::string> warnings;

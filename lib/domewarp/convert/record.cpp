@@ -34,6 +34,7 @@ Json surface_json(const SurfaceOptions& surface) {
     for (const Vec2& row : surface.profile) json["profile"].push_back({row.x, row.y});
   }
   if (surface.rmax) json["rmax"] = *surface.rmax;
+  if (surface.extension_deg != 0) json["extension_deg"] = surface.extension_deg;
   if (surface.projector) json["projector"] = *surface.projector;
   json["branch"] = surface.branches == BranchChoice::all ? "all" : "first";
   return json;
@@ -50,6 +51,7 @@ SurfaceOptions parse_surface(const Json& json) {
     for (const Json& row : json["profile"]) surface.profile.push_back({row.at(0).get<double>(), row.at(1).get<double>()});
   surface.profile_name = json.value("profile_name", "");
   if (json.contains("rmax")) surface.rmax = json["rmax"].get<double>();
+  surface.extension_deg = json.value("extension_deg", 0.0);
   if (json.contains("projector")) surface.projector = json["projector"].get<double>();
   if (json.value("branch", "all") == "first") surface.branches = BranchChoice::first;
   return surface;

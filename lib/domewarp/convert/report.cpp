@@ -132,6 +132,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["surface"] = Json::parse(to_json(options.surface));
   json["surface"]["r_max"] = report.r_max;
   json["surface"]["r_max_reason"] = to_string(report.r_max_limit);
+  json["surface"]["extension_deg"] = report.extension_deg;
   json["surface"]["branches"] = branches_json(report);
   json["limits_hit"] = refine.limits_hit;
   json["warnings"] = report.warnings;

@@ -27,6 +27,7 @@ struct SurfaceOptions {
   std::optional<double> rmax;    ///< image radius the user wants to see at most
   std::optional<double> projector; ///< distance of the projector behind the eye, image units
   BranchChoice branches = BranchChoice::all;
+  double extension_deg = 0;      ///< geometry goes on so far beyond r_max, along the tangent; the picture ends at r_max
 };
 
 /// The image radius as a function of the view angle theta (0 forward, pi backward) with its derivatives.

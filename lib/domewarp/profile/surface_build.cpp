@@ -36,6 +36,8 @@ void check(const SurfaceOptions& options, double screen_radius) {
   if (given > 1) refuse("--curve", "only one of --curve, --lens and --profile can be given");
   if (options.rmax) require_positive("--rmax", *options.rmax);
   if (options.projector) require_positive("--projector", *options.projector);
+  if (!(options.extension_deg >= 0 && options.extension_deg <= 180))
+    refuse("--extension", "must be from 0 to 180 degrees, got " + std::to_string(options.extension_deg));
   require_positive("--size", screen_radius);
 }
 

@@ -29,15 +29,10 @@ float rounded_up(double value) {
 }
 
 /// The angle that moves the rim by a tenth of the tolerance.
-double unnoticed_angle(const Surface& surface, std::size_t branch, double tolerance) {
-  const Branch& b = surface.branches()[branch];
-  const double slope = std::max(std::abs(surface.radial(branch, b.theta_low).dr), std::abs(surface.radial(branch, b.theta_high).dr));
-  return 0.1 * tolerance / std::clamp(slope, 1.0, 1e4);
-}
-
-/// |R'|; 0 at a fold, where it is infinite and the image ends.
-double slope_at(const Surface& surface, std::size_t branch, double theta, bool is_fold) {
-  return is_fold ? 0 : std::abs(surface.radial(branch, theta).dr);
+double unnoticed_angle(const BranchMap& map, double tolerance) {
+  constexpr double steepest = 1e4;
+  const bool has_fold = map.branch().fold_low || map.branch().fold_high;
+  return 0.1 * tolerance / (has_fold ? steepest : std::clamp(std::max(map.end_slope(false), map.end_slope(true)), 1.0, steepest));
 }
 
 } // namespace
@@ -45,8 +40,7 @@ double slope_at(const Surface& surface, std::size_t branch, double theta, bool i
 EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchMap& map, VisibleRegion region,
                        const OracleOptions& options)
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
-      rim_angle_(unnoticed_angle(surface, branch, options.tolerance)), low_slope_(slope_at(surface, branch, map.branch().theta_low, map.branch().fold_low)),
-      high_slope_(slope_at(surface, branch, highest_angle(map.branch()), map.branch().fold_high)) {
+      rim_angle_(unnoticed_angle(map, options.tolerance)), low_slope_(map.end_slope(false)), high_slope_(map.end_slope(true)) {
   if (options.criterion) most_asked_ = static_cast<int>(std::ceil(std::log2(widest_asked / options.criterion_length)));
 }
 
@@ -75,19 +69,21 @@ MappedPoint EdgeOracle::locate(const Vec3& eye, int on) const {
   return point;
 }
 
-// The middle of a rim's chord may be beyond the rim: not drawn, but what is cut off there then follows the rim more closely.
+// What is beyond a rim's chord is gone: its middle is on the rim too, for whoever looks for open edges, unless it is beyond the
+// rim itself. Then it is not drawn, and what is cut off there follows the rim more closely.
 std::optional<MappedPoint> EdgeOracle::middle(const MappedPoint& a, const MappedPoint& b) const {
   const Vec3 eye = point_at(a.eye, b.eye, 0.5);
   if (eye == a.eye || eye == b.eye) return std::nullopt;
+  const Sides sides = sides_of(region_, eye);
+  bool is_chord = false;
   int on = -1;
-  bool is_rim = false;
-  for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i)
-    if (a.sides[i] == 0 && b.sides[i] == 0) {
-      if (region_.boundaries[i].kind == Boundary::Kind::near_sphere) on = i;
-      else is_rim = true;
-    }
+  for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i) {
+    if (a.sides[i] != 0 || b.sides[i] != 0) continue;
+    is_chord = true;
+    if (sides[i] > 0 || region_.boundaries[i].kind == Boundary::Kind::near_sphere) on = i;
+  }
+  if (!is_chord && *std::min_element(sides.begin(), sides.end()) < 0) return std::nullopt;
   MappedPoint point = locate(eye, on);
-  if (!is_rim && *std::min_element(point.sides.begin(), point.sides.end()) < 0) return std::nullopt;
   point.asked = std::max(a.asked, b.asked);
   return point;
 }
@@ -101,7 +97,9 @@ std::optional<Split> EdgeOracle::split_at_boundary(const MappedPoint& a, const M
   for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i)
     if (a.sides[i] * b.sides[i] < 0)
       if (auto found = split(crossing(region_.boundaries[i], a.eye, b.eye), i)) return found;
-  for (int i = 0; i < static_cast<int>(region_.boundaries.size()); ++i) {
+  // The near sphere, which is the last, first: what a cone shows of a face that touches the eye narrows towards it, whoever
+  // sees the side that passes through.
+  for (int i = static_cast<int>(region_.boundaries.size()) - 1; i >= 0; --i) {
     const Boundary& boundary = region_.boundaries[i];
     const int side = a.sides[i] + b.sides[i]; // 0 only when both are on the boundary: a chord, judged by its sagitta
     if (side != 0) {

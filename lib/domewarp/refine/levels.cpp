@@ -29,11 +29,11 @@ void finish_early(LevelState& state, std::size_t first_undecided) {
 /// Decides about all edges from `decided` on and splits, until no face asks for more.
 void settle(LevelState& state, std::size_t decided, std::size_t max_triangles) {
   RefinedMesh& mesh = state.mesh;
-  while (!state.active.empty()) {
+  for (std::size_t level = 1; !state.active.empty(); ++level) {
     decided = split_edges(state, decided);
     split_faces(state);
     ++mesh.levels;
-    if (mesh.whole.size() + mesh.faces.size() + state.active.size() <= max_triangles && mesh.levels < deepest_level) continue;
+    if (mesh.whole.size() + mesh.faces.size() + state.active.size() <= max_triangles && level < deepest_level) continue;
     mesh.stopped = true;
     finish_early(state, decided);
   }

@@ -15,6 +15,7 @@
 #include <numbers>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/transform/continuation.h"
 #include "domewarp/transform/image_map.h"
 #include "domewarp/transform/radial_table.h"
 #include "domewarp/transform/weight.h"
@@ -33,28 +34,22 @@ Interval unite(const Interval& a, const Interval& b) { return {std::min(a.lo, b.
 double width(const Interval& a) { return a.hi - a.lo; }
 double magnitude(const Interval& a) { return std::max(std::abs(a.lo), std::abs(a.hi)); }
 
-/// R over a range of angles within a branch or beyond one of its ends, where it goes on as transform/weight.h says.
+/// R over a range of angles within a branch or beyond one of its ends (transform/continuation.h).
 class ContinuedRadius {
 public:
   ContinuedRadius(const Surface& surface, std::size_t branch)
-      : surface_(surface), branch_(branch), range_(surface.branches()[branch]), slope_low_(slope_beyond(surface, branch, false)),
-        slope_high_(slope_beyond(surface, branch, true)) {}
+      : surface_(surface), branch_(branch), range_(surface.branches()[branch]), before_(surface, branch, false), after_(surface, branch, true) {}
 
   RadialEnclosure enclose(double low, double high) const {
-    if (high <= range_.theta_low) return beyond(range_.theta_low, range_.radius_low, slope_low_, low, high);
-    if (low >= range_.theta_high) return beyond(range_.theta_high, range_.radius_high, slope_high_, low, high);
+    if (high <= range_.theta_low) return before_.enclose(low, high);
+    if (low >= range_.theta_high) return after_.enclose(low, high);
     RadialEnclosure all = surface_.enclose(branch_, std::max(low, range_.theta_low), std::min(high, range_.theta_high));
-    if (low < range_.theta_low) include(all, beyond(range_.theta_low, range_.radius_low, slope_low_, low, range_.theta_low));
-    if (high > range_.theta_high) include(all, beyond(range_.theta_high, range_.radius_high, slope_high_, range_.theta_high, high));
+    if (low < range_.theta_low) include(all, before_.enclose(low, range_.theta_low));
+    if (high > range_.theta_high) include(all, after_.enclose(range_.theta_high, high));
     return all;
   }
 
 private:
-  static RadialEnclosure beyond(double end, double radius, double slope, double low, double high) {
-    const Interval angle = Interval(low, high) - Interval(end), s = sin(angle), c = cos(angle);
-    return {Interval(radius) + Interval(slope) * s, Interval(slope) * c, Interval(-slope) * s};
-  }
-
   static void include(RadialEnclosure& all, const RadialEnclosure& part) {
     all = {unite(all.r, part.r), unite(all.dr, part.dr), unite(all.d2r, part.d2r)};
   }
@@ -62,7 +57,7 @@ private:
   const Surface& surface_;
   std::size_t branch_;
   const Branch& range_;
-  double slope_low_, slope_high_;
+  Continuation before_, after_;
 };
 
 /// Hull of the enclosures over the parts of one cell.

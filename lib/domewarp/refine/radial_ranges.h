@@ -27,7 +27,7 @@ struct RadialRange {
 
 /// Ranges over one branch, from interval enclosures of R, R', R'': certain, not sampled. Cells are equal in the
 /// half-angle index u (transform/radial_table.h), so that a look-up needs no trigonometry; any range costs two of them.
-/// Some more of them beyond each end know how R goes on there (transform/weight.h); farther off nothing has a bound.
+/// Some more of them beyond each end know how R goes on there (transform/continuation.h); farther off nothing has a bound.
 class RadialRanges {
 public:
   RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high);

@@ -9,6 +9,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "domewarp/transform/continuation.h"
+
 namespace domewarp {
 
 namespace {
@@ -38,12 +40,18 @@ bool ViewCull::may_be_seen(const Ball& ball) const {
   const DirectionSector sector = sector_of({ball.centre / distance, std::asin(ball.radius / distance)});
   const double low = sector.theta_low, high = sector.theta_high;
   for (std::size_t b = 0; b < surface_.branches().size(); ++b) {
-    const Branch& branch = surface_.branches()[b];
+    const Branch branch = drawn_branch(surface_, b);
     if (low > branch.theta_high + rounding || high < branch.theta_low - rounding) continue;
-    const auto [near, far] = std::minmax({surface_.radius(b, std::sin(low), std::cos(low)), surface_.radius(b, std::sin(high), std::cos(high))});
+    const auto [near, far] = std::minmax({radius(b, std::max(low, branch.theta_low)), radius(b, std::min(high, branch.theta_high))});
     if (meets_rectangle(half_extent_, near * (1 - rounding), far * (1 + rounding), sector)) return true;
   }
   return false;
+}
+
+double ViewCull::radius(std::size_t branch, double theta) const {
+  const Branch& range = surface_.branches()[branch];
+  if (theta >= range.theta_low && theta <= range.theta_high) return surface_.radius(branch, std::sin(theta), std::cos(theta));
+  return Continuation(surface_, branch, theta > range.theta_high).radius(std::sin(theta), std::cos(theta));
 }
 
 DirectionSector sector_of(const DirectionCone& cone) {

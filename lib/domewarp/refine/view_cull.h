@@ -44,6 +44,8 @@ public:
   bool may_be_seen(const Ball& ball) const;
 
 private:
+  double radius(std::size_t branch, double theta) const;
+
   Surface surface_;
   Vec2 half_extent_;
 };

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 #include "domewarp/core/errors.h"
+#include "domewarp/scene/raster.h"
 
 namespace domewarp {
 
@@ -28,6 +31,20 @@ Frame make_frame(int width, int height, Layers layers) {
   frame.normal.assign(count, Vec3f(none));
   frame.uv.assign(count, Vec2f(none));
   return frame;
+}
+
+void clear_beyond(Frame& frame, double radius) {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  const Raster raster{frame.width, frame.height};
+  for (int row = 0; row < frame.height; ++row)
+    for (int column = 0; column < frame.width; ++column) {
+      if (glm::length(pixel_centre(raster, column, row)) <= radius) continue;
+      const std::size_t i = std::size_t(row) * std::size_t(frame.width) + std::size_t(column);
+      std::fill_n(frame.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4, std::uint8_t{0});
+      frame.object[i] = frame.triangle[i] = 0;
+      frame.position[i] = Vec3f(none);
+      frame.depth[i] = none;
+    }
 }
 
 Pixels colours(const Frame& frame) {

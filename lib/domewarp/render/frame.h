@@ -46,6 +46,9 @@ using FrameSink = std::function<void(const Frame& rows, int top)>;
 /// @throws Error(usage) when a size is not positive or the picture has more than 2^28 pixels.
 Frame make_frame(int width, int height, Layers layers = Layers::parity);
 
+/// Leaves nothing hit, black and transparent, where the pixel's centre is farther than `radius` (image units) from the axis.
+void clear_beyond(Frame& frame, double radius);
+
 /// The colours alone.
 Pixels colours(const Frame& frame);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "domewarp/transform/continuation.h"
 #include "domewarp/transform/image_map.h"
 #include "domewarp/transform/polar.h"
 #include "domewarp/transform/radial_table.h"
@@ -31,14 +32,16 @@ Vec2 sine_and_cosine(double theta) { return {std::sin(theta), theta == std::numb
 struct BranchMap::Impl {
   Surface surface;
   std::size_t index;
-  Branch branch;
+  Branch branch; ///< of the surface
+  Branch drawn;
+  Continuation before, after;
   double mean = 1;
   RadialTable table{};
   TableReport report{};
-  Vec2 low{0, 1}, high{0, -1}; // sine and cosine of the ends
+  Vec2 low{0, 1}, high{0, -1}; // sine and cosine of the ends of what is drawn
   double u_low = 0, u_high = 1;
   double least = 0, most = 0; // image radius
-  double g_low = 1, g_high = 1, slope_low = 0, slope_high = 0; // at the ends, for what lies beyond
+  double g_low = 1, g_high = 1; // at the ends, for what lies beyond
 
   void tabulate() {
     const auto start = std::chrono::steady_clock::now();
@@ -51,25 +54,18 @@ struct BranchMap::Impl {
 
   void find_ends() {
     std::tie(least, most) = std::minmax(branch.radius_low, branch.radius_high);
-    low = sine_and_cosine(branch.theta_low);
-    high = sine_and_cosine(branch.theta_high);
-    const bool from_axis = branch.theta_low == 0, to_back = branch.theta_high >= std::numbers::pi;
-    u_low = from_axis ? 0 : half_angle_index(low.x, low.y, 1);
-    u_high = to_back ? 1 : half_angle_index(high.x, high.y, 1);
+    low = sine_and_cosine(drawn.theta_low);
+    high = sine_and_cosine(drawn.theta_high);
+    const Vec2 first = sine_and_cosine(branch.theta_low), last = sine_and_cosine(branch.theta_high);
+    u_low = branch.theta_low == 0 ? 0 : half_angle_index(first.x, first.y, 1);
+    u_high = branch.theta_high >= std::numbers::pi ? 1 : half_angle_index(last.x, last.y, 1);
     g_low = weight(surface.radial(index, branch.theta_low).dr, mean);
     g_high = weight(surface.radial(index, branch.theta_high).dr, mean);
-    slope_low = slope_beyond(surface, index, false);
-    slope_high = slope_beyond(surface, index, true);
   }
 
-  // Beyond an end, and at its very cone.
-  RadialFactors beyond_low(const Polar& p) const {
-    const double short_of = (low.x * p.z - low.y * p.r) / p.rho;
-    return {std::max(branch.radius_low - slope_low * short_of, 0.0) / std::max(p.r / p.rho, smallest_sine), g_low};
-  }
-  RadialFactors beyond_high(const Polar& p) const {
-    const double beyond = (p.r * high.y - p.z * high.x) / p.rho;
-    return {std::max(branch.radius_high + slope_high * beyond, 0.0) / std::max(p.r / p.rho, smallest_sine), g_high};
+  static RadialFactors beyond(const Continuation& continuation, const Polar& p, double g) {
+    const double sine = p.r / p.rho;
+    return {continuation.radius(sine, p.z / p.rho) / std::max(sine, smallest_sine), g};
   }
 
   /// R of a direction within the branch.
@@ -105,7 +101,7 @@ struct BranchMap::Impl {
 
 BranchMap::BranchMap(const Surface& surface, std::size_t branch, Method method, std::size_t points) {
   const Branch& range = surface.branches()[branch];
-  auto impl = std::make_unique<Impl>(Impl{surface, branch, range, mean_slope(surface, branch)});
+  auto impl = std::make_unique<Impl>(Impl{surface, branch, range, drawn_branch(surface, branch), {surface, branch, false}, {surface, branch, true}, mean_slope(surface, branch)});
   const bool few = method == Method::automatic && points < table_pays_from;
   if (few) impl->report.reason = TableReason::few_points;
   if (method != Method::direct && !few) impl->tabulate();
@@ -126,14 +122,20 @@ BranchMap::~BranchMap() = default;
 BranchMap::BranchMap(BranchMap&&) noexcept = default;
 BranchMap& BranchMap::operator=(BranchMap&&) noexcept = default;
 
-const Branch& BranchMap::branch() const { return impl_->branch; }
+const Branch& BranchMap::branch() const { return impl_->drawn; }
+
+double BranchMap::end_slope(bool is_high) const {
+  const Branch& drawn = impl_->drawn;
+  if (is_high ? drawn.fold_high : drawn.fold_low) return 0;
+  return (is_high ? impl_->after : impl_->before).slope(is_high ? drawn.theta_high : drawn.theta_low);
+}
 const TableReport& BranchMap::table() const { return impl_->report; }
 
 RadialFactors BranchMap::factors(const Vec3& p) const {
   const Polar q = polar(p);
   const double u = half_angle_index(q.r, q.z, q.rho);
-  if (impl_->is_below(u)) return impl_->beyond_low(q);
-  if (impl_->is_above(u)) return impl_->beyond_high(q);
+  if (impl_->is_below(u)) return Impl::beyond(impl_->before, q, impl_->g_low);
+  if (impl_->is_above(u)) return Impl::beyond(impl_->after, q, impl_->g_high);
   if (impl_->report.used && q.z >= 0) {
     // K = (R / u) (u / s) without a division by r.
     const TableValue value = look_up(impl_->table, u);
@@ -161,8 +163,8 @@ Vec2 BranchMap::image(const Vec3& p) const {
 Vec2 BranchMap::inside(const Vec3& p) const {
   const Polar q = polar(p);
   const Vec2 low = impl_->low, high = impl_->high;
-  return q.unit * Vec2(impl_->branch.theta_low == 0 ? q.rho : q.r * low.y - q.z * low.x,
-                       impl_->u_high == 1 ? q.rho : q.z * high.x - q.r * high.y);
+  return q.unit * Vec2(impl_->drawn.theta_low == 0 ? q.rho : q.r * low.y - q.z * low.x,
+                       impl_->drawn.theta_high >= std::numbers::pi ? q.rho : q.z * high.x - q.r * high.y);
 }
 
 Vec3 BranchMap::weight_jet(double theta) const { return domewarp::weight_jet(impl_->surface, impl_->index, theta); }

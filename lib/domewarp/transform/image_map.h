@@ -71,10 +71,14 @@ public:
   BranchMap(BranchMap&&) noexcept;
   BranchMap& operator=(BranchMap&&) noexcept;
 
+  /// What is drawn of the branch (drawn_branch, transform/continuation.h).
   const Branch& branch() const;
 
+  /// |R'| at an end of what is drawn, 0 at a fold.
+  double end_slope(bool is_high) const;
+
   /// @param p eye space (looking along -z), finite and not zero; outside the branch R goes on from its nearer end
-  ///          as slope_beyond (transform/weight.h) says.
+  ///          (transform/continuation.h).
   RadialFactors factors(const Vec3& p) const;
 
   /// Image point of p by this branch: (x, y) K / rho, up to rounding; a point straight behind, whose image is a circle,

@@ -65,11 +65,4 @@ Vec3 weight_jet(const Surface& surface, std::size_t branch, double theta) {
   return {here.x, here.y, (after.y - before.y) / (2 * width)};
 }
 
-double slope_beyond(const Surface& surface, std::size_t branch, bool is_high) {
-  constexpr double steepest = 1e4; // image units per radian: nothing but a fold
-  const Branch& range = surface.branches()[branch];
-  const double slope = surface.radial(branch, is_high ? range.theta_high : range.theta_low).dr;
-  return std::abs(slope) < steepest ? slope : 0;
-}
-
 } // namespace domewarp

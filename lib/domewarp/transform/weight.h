@@ -19,8 +19,4 @@ double mean_slope(const Surface& surface, std::size_t branch);
 /// g, g', g'' in theta, within the smooth stretch of the branch that contains theta.
 Vec3 weight_jet(const Surface& surface, std::size_t branch, double theta);
 
-/// R' at an end of a branch, with which R goes on beyond it: R(theta_e) + R'(theta_e) sin(theta - theta_e). What lies there is
-/// not shown, but rims are chords whose points do; 0, so that R stays, where R' has no bound (a fold).
-double slope_beyond(const Surface& surface, std::size_t branch, bool is_high);
-
 } // namespace domewarp

@@ -38,7 +38,7 @@ struct Expected {
 /// Every surface, both projections: sound, and no sample farther off than the tolerance.
 void expect_sound(const Scene& scene, const Expected& expected = {}) {
   // Through the last, the picture wraps around the backward direction.
-  const std::vector<SurfaceOptions> surfaces = {curve("1-r^2"), curve("3-sqrt(4+6*r^2)"), curve("1-2.5*r^2"), lens(Lens::equidistant, 180), lens(Lens::equidistant, 270)};
+  const std::vector<SurfaceOptions> surfaces = {curve("1-r^2"), curve("3-sqrt(4+6*r^2)"), curve("1-2.5*r^2"), lens(Lens::equidistant, 120), lens(Lens::equidistant, 180), lens(Lens::equidistant, 270)};
   for (const Projection projection : {Projection::perspective, Projection::orthographic})
     for (const SurfaceOptions& surface : surfaces) {
       RefineOptions options;

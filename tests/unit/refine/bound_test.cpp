@@ -60,8 +60,8 @@ TEST(ErrorBound, CoversTheSampledErrorOfRandomEdges) {
       const bool in_order = precedes(p, q);
       const MappedPoint a = oracle.locate(in_order ? p : q), b = oracle.locate(in_order ? q : p);
       bool inside = true;
-      for (int s = 0; s <= 16; ++s)
-        for (const std::int8_t side : oracle.locate(point_at(a.eye, b.eye, s / 16.0)).sides) inside = inside && side > 0;
+      for (int s = 0; s <= 32; ++s)
+        for (const std::int8_t side : oracle.locate(point_at(a.eye, b.eye, s / 32.0)).sides) inside = inside && side > 0;
       if (!inside) continue;
       ++tested;
       const double bound = oracle.diagonal_error(a, b);
