@@ -133,6 +133,16 @@ struct BatchMap::Impl {
     if (unfit) repair(in, out, count, output);
   }
 
+  /// The kernel knows points that are laid out alike.
+  bool map_whole(const ConstPoints& in, const Points& out, BatchOutput output, bool streams) const {
+    if (in.stride == out.stride) return map_block(*table, in, out, output, streams);
+    Buffer source, mapped;
+    if (in.stride != 1) copy(in, source.points(), block);
+    const bool unfit = map_block(*table, in.stride == 1 ? in : source.points(), mapped.points(), output, false);
+    copy(mapped.points(), out, block);
+    return unfit;
+  }
+
   void map_blocks(const ConstPoints& in, const Points& out, std::size_t count, BatchOutput output) const {
     const bool streams = is_streamed(count);
     const std::size_t whole = count / block;
@@ -140,7 +150,7 @@ struct BatchMap::Impl {
       for (std::size_t i = begin; i < end; ++i) {
         const ConstPoints from = at(in, i * block);
         const Points to = at(out, i * block);
-        if (map_block(*table, from, to, output, streams)) repair(from, to, block, output);
+        if (map_whole(from, to, output, streams)) repair(from, to, block, output);
       }
       if (streams) finish_streaming();
     });

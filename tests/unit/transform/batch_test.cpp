@@ -153,6 +153,21 @@ TEST_F(Batch, OldProcessorsAreAsExact) {
   }
 }
 
+TEST_F(Batch, PointsMayComeInOneLayoutAndLeaveInTheOther) {
+  const BatchMap batch(curve_surface("1-r^2"));
+  for (const std::size_t count : {100, 5000}) {
+    const Cloud in = random_directions(count, 11);
+    Cloud split(in.size()), mapped(in.size()), out(in.size());
+    for (std::size_t i = 0; i < in.size(); ++i) split[i % 3 * count + i / 3] = in[i];
+    batch.map({&split[0], &split[count], &split[2 * count], 1}, interleaved(out.data()), count, BatchOutput::image);
+    EXPECT_TRUE(same_bits(out, map(batch, in)));
+    float* const p = mapped.data();
+    batch.map(interleaved(in.data()), {p, p + count, p + 2 * count, 1}, count, BatchOutput::image);
+    for (std::size_t i = 0; i < in.size(); ++i) out[i] = mapped[i % 3 * count + i / 3];
+    EXPECT_TRUE(same_bits(out, map(batch, in)));
+  }
+}
+
 TEST_F(Batch, ThreadsPlacesAndStreamingDoNotMatter) {
   const BatchMap batch(curve_surface("1-r^2"));
   Cloud in = random_directions((2 << 20) + 77, 7); // more than the caches hold, and no whole number of blocks
