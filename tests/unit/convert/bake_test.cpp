@@ -133,6 +133,12 @@ Scene with_plate() {
   return scene;
 }
 
+/// On the floor, two pixels towards or away from the eye: as wide as an outline of a shadow is a ramp.
+double ramp(const Vec3& p) {
+  const double pixel = 2.0 / 512 * std::numbers::pi / 2; // radians
+  return 2 * pixel * glm::dot(p, p) / std::abs(floor_height);
+}
+
 TEST(Bake, CastsShadowsOnRequest) {
   ConvertOptions options = baking();
   options.bake.shadows = true;
@@ -141,7 +147,7 @@ TEST(Bake, CastsShadowsOnRequest) {
   std::size_t dark = 0, wrong = 0;
   for (const Sample& s : shadowed) {
     const double depth = depth_in_shadow(s.eye);
-    if (std::abs(depth) < 0.05) continue; // the outline is a ramp of two pixels
+    if (std::abs(depth) < ramp(s.eye)) continue;
     dark += depth > 0;
     wrong += std::abs(srgb_step(s.red) - (depth > 0 ? 0 : srgb_step(light_on_floor(s.eye)))) > 6;
   }
