@@ -240,7 +240,7 @@ struct Coefficients {
   }
 
   static HWY_INLINE auto LaneOf(Indices index) {
-#if HWY_ARCH_X86
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
     return Lanes{index.raw}; // takes the low bits
 #else
     return hn::IndicesFromVec(Tag(), hn::And(index, hn::Set(hn::RebindToSigned<Tag>(), static_cast<int>(lanes) - 1)));
