@@ -112,10 +112,11 @@ private:
         if (provenance_.branch[vertices[it->vertex]] == provenance_.branch[edge[0]]) chain.push_back(vertices[it->vertex]);
       for (std::size_t i = 1; i < chain.size(); ++i) {
         const double gap = distance_to_segment(pixel(chain[i]), pixel(edge[0]), pixel(edge[1]));
+        if (gap <= negligible_px) continue;
+        ++report_.t_junctions;
         report_.max_gap_px = std::max(report_.max_gap_px, gap);
         sum += gap;
       }
-      report_.t_junctions += chain.size() - 1;
       chain.push_back(edge[1]);
       double area = 0;
       for (std::size_t i = 1; i + 1 < chain.size(); ++i) area += twice_area(pixel(chain[0]), pixel(chain[i]), pixel(chain[i + 1]));

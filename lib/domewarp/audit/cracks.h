@@ -15,7 +15,7 @@ struct CrackReport {
   bool source_known = false;        ///< open edges of the source are told apart
   std::size_t torn_positions = 0;   ///< source positions that one branch draws at two places more than a thousandth of a pixel apart
   std::size_t open_edges = 0;       ///< in source space, that neither clipping nor (where it is known) the source explains
-  std::size_t t_junctions = 0;      ///< vertices inside open edges, in source space
+  std::size_t t_junctions = 0;      ///< vertices inside an open edge, more than a thousandth of a pixel off it
   double max_gap_px = 0;            ///< farthest that a T-junction is from its edge, or a torn position from itself
   double mean_gap_px = 0;           ///< over T-junctions
   double gap_area_px2 = 0;          ///< between the edges and the T-junctions on them

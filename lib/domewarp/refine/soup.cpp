@@ -141,7 +141,7 @@ public:
 
   /// @return whether there were any
   bool run() {
-    soup_.t_junctions = junctions_.size();
+    soup_.t_junctions += junctions_.size();
     if (junctions_.empty()) return false;
     std::vector<std::uint8_t> is_end(soup_.points.size(), 0);
     for (const TJunction& junction : junctions_) is_end[open_.edges[junction.edge].a] = is_end[open_.edges[junction.edge].b] = 1;
@@ -233,7 +233,13 @@ Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options)
   const MeshTopology open = topology_of(soup);
   soup.near_misses = count_near_misses(soup.points, open, largest(view.eye));
   soup.open_edges = (TJunctionSplitter(soup, open).run() ? topology_of(soup) : open).edges.size();
-  if (options.cull_back_faces) drop_back_faces(scene, soup);
+  if (!options.cull_back_faces) return soup;
+  drop_back_faces(scene, soup);
+  // Sides whose other face is gone are open now, too: solids that abut part there.
+  if (soup.back_faces > 0) {
+    const MeshTopology drawn = topology_of(soup);
+    TJunctionSplitter(soup, drawn).run();
+  }
   return soup;
 }
 
