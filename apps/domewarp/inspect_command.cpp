@@ -26,7 +26,7 @@ struct Arguments {
 Picture make_picture(const Record& record) {
   Surface surface(record.surface, screen_radius(record.raster));
   ImageMap map = make_image_map(surface, Method::direct);
-  return {std::move(surface), std::move(map), record.view, record.raster, record.projection == Projection::perspective, record.near, std::max(1.0, record.tolerance_px)};
+  return {std::move(surface), std::move(map), record.view, record.raster, record.projection == Projection::perspective, record.near, record.tolerance_px};
 }
 
 int run(const Arguments& arguments) {

@@ -203,7 +203,7 @@ void add_output_options(CLI::App& app, ConvertOptions& options) {
                      double& extension = options.surface.extension_deg;
                      extension = is_tangent ? (extension > 0 ? extension : default_extension_deg) : 0;
                    });
-  add(*group, "--extension", "How far --boundary tangent goes on, degrees (default 10); less where blind directions are near", "DEG",
+  add(*group, "--extension", "How far --boundary tangent, which this implies, goes on, degrees (default 10); less where blind directions are near", "DEG",
       [&options](const std::string& text) { options.surface.extension_deg = parse_positive("--extension", text); });
   group->add_flag("--cull-hidden", options.cull_hidden,
                   "Leave out triangles that no ray at twice the picture's density reaches within a pixel (opens edges: inspect --strict will say so)");

@@ -37,6 +37,7 @@ exceeds() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'; }
 
 # misses COMPARE_JSON SEAMS: what a pair misses, one word each. SEAMS: pinholes where outlines meet are let pass
 misses() {
+  for k in displacement_px.max depth_rel.max; do [ "$(figure $k "$1")" = - ] && echo "${k%%_*} unknown"; done
   exceeds "$(figure displacement_px.max "$1")" 0.50390625 && echo displacement
   [ "$(figure pinholes "$1")" = "$([ "$2" = yes ] && figure pinholes_at_seams "$1" || echo 0)" ] || echo pinholes
   [ "$(figure surface_mismatch "$1")" = "$(figure surface_mismatch_at_seams "$1")" ] || echo mismatches

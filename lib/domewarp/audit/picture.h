@@ -15,7 +15,7 @@ struct Picture {
   Raster raster;
   bool perspective = true;       ///< else orthographic
   double near = 0;               ///< nothing nearer to the eye was drawn
-  double rim_px = 1;             ///< by how much a rim may be flatter than its circle, for its chords
+  double rim_px = 0.5;           ///< by how much a rim may be flatter than its circle, for its chords: the tolerance
 };
 
 /// Where a written position appears, image units.

@@ -30,7 +30,7 @@ void find_on_edge(const PointTree& candidates, const MeshTopology::Edge& edge, s
   const std::span<const Vec3> points = candidates.points();
   const Vec3 a = points[edge.a], b = points[edge.b], d = b - a;
   const double length = glm::length(d);
-  const double reach = tolerance * length + std::ldexp(std::max(largest(a), largest(b)), -20); // eight units in the last place
+  const double reach = tolerance * length + std::ldexp(std::max(largest(a), largest(b)), -21); // four units in the last place
   candidates.visit_near_segment(a, b, reach, [&](std::uint32_t id) {
     if (id == edge.a || id == edge.b) return;
     const double t = glm::dot(points[id] - a, d) / (length * length);

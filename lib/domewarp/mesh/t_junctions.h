@@ -20,7 +20,7 @@ struct TJunction {
 
 /// Finds the ends of open edges that lie inside other open edges.
 /// @param tolerance largest distance from the edge, relative to the edge's length plus the size of its coordinates in
-///                  eight float32 units in the last place: what a modeller's rounding leaves
+///                  four float32 units in the last place: what a modeller's rounding leaves
 /// @return sorted by edge, then by t
 std::vector<TJunction> find_t_junctions(std::span<const Vec3> points, const MeshTopology& topology, double tolerance = 1e-6);
 

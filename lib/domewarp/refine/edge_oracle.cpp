@@ -41,7 +41,7 @@ EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchM
                        const OracleOptions& options)
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
       rim_angle_(unnoticed_angle(map, options.tolerance)), low_slope_(map.end_slope(false)), high_slope_(map.end_slope(true)) {
-  if (options.criterion) most_asked_ = static_cast<int>(std::ceil(std::log2(widest_asked / options.criterion_length)));
+  if (options.criterion) most_asked_ = static_cast<int>(std::clamp(std::ceil(std::log2(widest_asked / options.criterion_length)), 0.0, 255.0));
 }
 
 EdgeOracle EdgeOracle::relaxed(double factor) const {

@@ -133,7 +133,6 @@ void wake_whole_faces(LevelState& state, const std::vector<std::uint32_t>& sides
     }
   }
   for (SourceEdge& edge : mesh.source_edges) edge.whole = 0;
-  std::map<Ends, std::uint32_t> count;
   for (const WholeFace& face : mesh.whole)
     for (int k = 0; k < 3; ++k)
       if (const auto edge = known.find(ends_of(soup.faces[face.source].point[k], soup.faces[face.source].point[(k + 1) % 3])); edge != known.end())

@@ -190,6 +190,7 @@ Weights weights_of(const Smooth& cell, double mean) {
 }
 
 float rounded_up(double value) {
+  if (std::isnan(value)) return std::numeric_limits<float>::infinity();
   const float f = static_cast<float>(value);
   return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
 }
@@ -222,11 +223,12 @@ const Cell unknown{entire(Regularity::unknown), {0}, {0}, {0}, {0}, {1}, {0}, 0,
 } // namespace
 
 RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double theta_low, double theta_high) {
-  const double u_low = theta_low == 0 ? 0 : index_of(theta_low), u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
-  scale_ = inner_cells / (u_high - u_low);
-  u_start_ = u_low - margin / scale_;
+  u_low_ = theta_low == 0 ? 0 : index_of(theta_low);
+  const double u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
+  scale_ = inner_cells / (u_high - u_low_);
   const double mean = mean_slope(surface, branch);
   const ContinuedRadius radius(surface, branch);
+  const Branch& range = surface.branches()[branch];
   slope_jumps_.assign(cells + 1, 0);
   weight_jumps_.assign(cells + 1, 0);
   std::vector<Row> base(cells);
@@ -235,13 +237,20 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     const auto start_of = [&](std::size_t cell) {
       if (cell == margin) return theta_low;
       if (cell == margin + inner_cells) return theta_high;
-      return angle_at(std::clamp(u_start_ + static_cast<double>(cell) / scale_, 0.0, 1.0));
+      return angle_at(std::clamp(u_low_ + (static_cast<double>(cell) - margin) / scale_, 0.0, 1.0));
     };
     const double first = std::max(0.0, start_of(i) - (i == margin ? 0 : rounding));
     const double last = std::min(std::numbers::pi, start_of(i + 1) + (i + 1 == margin + inner_cells ? 0 : rounding));
     const bool is_outermost = (i == 0 && first > 0) || (i + 1 == cells && last < std::numbers::pi);
     const bool has_pole = i < margin && first <= 0; // K = R / sin(theta), and R is not 0 there
-    const Cell cell = is_outermost || has_pole ? unknown : make_cell(radius, mean, first, last);
+    Cell cell = is_outermost || has_pole ? unknown : make_cell(radius, mean, first, last);
+    for (const bool is_high : {false, true}) {
+      const double end = is_high ? range.theta_high : range.theta_low;
+      if (is_high ? last <= end : first >= end) continue;
+      const double g = weight(surface.radial(branch, end).dr, mean); // beyond an end BranchMap keeps the end's weight
+      cell.weight = unite(cell.weight, Interval(g * (1 - rounding), g * (1 + rounding)));
+      cell.weight_slope = unite(cell.weight_slope, Interval(0));
+    }
     const std::array<Interval, quantities> all{cell.along, cell.across, cell.twist, cell.slope, cell.factor, cell.weight, cell.weight_slope};
     for (int k = 0; k < quantities; ++k) {
       base[i][2 * k] = rounded_up(-all[k].lo);
@@ -265,7 +274,7 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
 }
 
 RadialRange RadialRanges::over(double u_low, double u_high) const {
-  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp((u - u_start_) * scale_, 0.0, cells - 1.0)); };
+  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp(margin + (u - u_low_) * scale_, 0.0, cells - 1.0)); };
   const std::size_t first = cell(u_low), last = std::max(first, cell(u_high)); // rounding may have swapped them
   const std::size_t level = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
   const Row& left = levels_[level][first];

@@ -42,7 +42,7 @@ private:
   /// axis: they are kept times cos^2(theta / 2), cos^2(theta / 2) and cos(theta / 2).
   using Row = std::array<float, 2 * quantities>;
 
-  double u_start_ = 0, scale_ = 0; ///< where the first cell begins, cells per unit
+  double u_low_ = 0, scale_ = 0; ///< where the first inner cell begins, cells per unit
   std::vector<std::vector<Row>> levels_; ///< sparse table: levels_[k][i] covers cells i .. i + 2^k - 1
   std::vector<double> slope_jumps_, weight_jumps_; ///< running sums, cells + 1
 };

@@ -47,6 +47,7 @@ void check(const RefineOptions& options) {
   if (options.isotropic.max_lod < 0 || options.isotropic.max_lod > 12)
     throw Error(ErrorCode::usage, "--max-lod: must be from 0 to 12, got " + std::to_string(options.isotropic.max_lod));
   if (options.near != 0) positive(options.near, "--near");
+  if (options.criterion) positive(options.criterion_px, "criterion_px");
   if (options.weld != 0) positive(options.weld, "--weld");
 }
 

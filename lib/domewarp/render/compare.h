@@ -41,8 +41,8 @@ struct DisplacementReport {
 };
 
 /// |drawn - exact| / exact, where `drawn` is what the depth buffer sorted by and `exact` what the same point of the scene
-/// has: its distance times the weight of its direction, or its distance for an orthographic camera. This is what
-/// `convert` certifies as depth_error_rel. How far the point is from its place is the displacement, and not counted here.
+/// has: its distance times the weight of its direction, or its distance for an orthographic camera. `convert`
+/// certifies depth_error_rel along edges; triangles between them may sag by 4/3 of it. How far the point is from its place is the displacement, and not counted here.
 struct DepthReport {
   std::size_t measured = 0; ///< pixels; 0 when the warped file carries no source positions, the rest is 0 then
   double max = 0;

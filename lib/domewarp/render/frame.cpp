@@ -41,9 +41,11 @@ void clear_beyond(Frame& frame, double radius) {
       if (glm::length(pixel_centre(raster, column, row)) <= radius) continue;
       const std::size_t i = std::size_t(row) * std::size_t(frame.width) + std::size_t(column);
       std::fill_n(frame.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4, std::uint8_t{0});
-      frame.object[i] = frame.triangle[i] = 0;
-      frame.position[i] = Vec3f(none);
-      frame.depth[i] = none;
+      if (!frame.object.empty()) frame.object[i] = frame.triangle[i] = 0;
+      if (!frame.position.empty()) frame.position[i] = Vec3f(none);
+      if (!frame.normal.empty()) frame.normal[i] = Vec3f(none);
+      for (std::vector<float>* depth : {&frame.depth, &frame.drawn_depth})
+        if (!depth->empty()) (*depth)[i] = none;
     }
 }
 

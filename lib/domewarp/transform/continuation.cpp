@@ -53,7 +53,9 @@ RadialEnclosure Continuation::enclose(double theta_low, double theta_high) const
   const Interval angle(theta_low, theta_high);
   if (!is_tangent()) {
     const Interval beyond = angle - Interval(theta_), s = sin(beyond), c = cos(beyond);
-    return {Interval(radius_) + Interval(slope_) * s, Interval(slope_) * c, Interval(-slope_) * s};
+    const Interval r = Interval(radius_) + Interval(slope_) * s, unbounded = entire(Regularity::unknown);
+    if (r.lo < -1e-9) return {unbounded, unbounded, unbounded}; // radius() stays at 0
+    return {r, Interval(slope_) * c, Interval(-slope_) * s};
   }
   const Interval s = sin(angle), c = cos(angle), q = c * Interval(a_) - s * Interval(b_), share = q / Interval(q_);
   const Interval unbounded = entire(Regularity::unknown);

@@ -209,6 +209,45 @@ TEST(RadialRanges, ContainWhatTheyBound) {
   }
 }
 
+TEST(RadialRanges, KnowTheForwardAxis) {
+  // The index of the axis is a difference of rounded numbers: it must not fall into the margin before it.
+  for (const double fov : {180.0, 205.0, 260.0, 265.0, 275.0}) {
+    const Surface surface(lens(Lens::equidistant, fov), std::sqrt(2.0));
+    EXPECT_TRUE(std::isfinite(RadialRanges(surface, 0, 0, surface.branches()[0].theta_high).over(0, 0).along.high)) << fov;
+  }
+  const Surface wide(curve("1-r^2"), std::hypot(16.0 / 9, 1));
+  EXPECT_TRUE(std::isfinite(RadialRanges(wide, 0, 0, wide.branches()[0].theta_high).over(0, 0).along.high));
+}
+
+TEST(ErrorBound, CoversTheDepthAcrossAnExtendedRim) {
+  // The weight stays beyond r_max, and so has a kink there.
+  SurfaceOptions options = curve("1-r");
+  options.rmax = 0.7;
+  options.extension_deg = 10;
+  const Surface surface(options, std::sqrt(2.0));
+  const BranchMap map(surface, 0, Method::direct);
+  const ErrorBound bound(surface, 0, map.branch().theta_low, highest_angle(map.branch()), Projection::perspective);
+  const double rim = surface.branches()[0].theta_high;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  double worst = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto at = [&](double theta, double phi, double rho) {
+      return direction_of(rho * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), -std::cos(theta)));
+    };
+    const Direction a = at(rim - 0.05 * std::abs(uniform(random)), 0.05 * uniform(random), 1), b = at(rim + 0.05 * std::abs(uniform(random)), 0, 1 + 0.3 * uniform(random));
+    const double wa = a.rho * map.factors(a.eye).g, wb = b.rho * map.factors(b.eye).g, bounded = bound.edge(a, b, wa, wb).depth;
+    for (int s = 1; s < 32; ++s) {
+      const double t = s / 32.0;
+      const Vec3 eye = a.eye * (1 - t) + b.eye * t;
+      const double off = std::abs((wa * (1 - t) + wb * t) / (glm::length(eye) * map.factors(eye).g) - 1);
+      worst = std::max(worst, off);
+      EXPECT_LE(off, bounded * (1 + 1e-9) + 1e-12);
+    }
+  }
+  EXPECT_GT(worst, 0.002); // it would matter
+}
+
 TEST(ErrorBound, IsNoTriviallyLargeNumber) {
   const Surface surface(curve("1-r^2"), std::sqrt(2.0));
   const ImageMap map = make_image_map(surface, Method::automatic);
