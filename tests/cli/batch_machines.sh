@@ -7,15 +7,9 @@ set -u
 domewarp=$1
 root=$2
 command -v parallel >/dev/null || { echo "GNU parallel is not here"; exit 77; }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
+source "$(dirname "$0")/checks.sh"
 export PARALLEL_HOME=$work/parallel
 mkdir -p "$PARALLEL_HOME" shows/sub
-failures=0
-same() { # NAME EXPECTED GOT
-  [ "$2" = "$3" ] || { failures=$((failures + 1)); echo "FAILED: $1: expected '$2', got '$3'"; }
-}
 for i in $(seq 12); do cp "$root/data/cubes.glb" "shows/sub/$i.glb"; done
 quick="--lens equidistant --size 4096x4096 --tolerance 0.2 --jobs 1 --quiet"
 

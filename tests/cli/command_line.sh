@@ -5,17 +5,7 @@
 set -u
 domewarp=$1
 root=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-passes=0
-
-check() { # NAME CONDITION...
-  local name=$1
-  shift
-  if "$@"; then passes=$((passes + 1)); else failures=$((failures + 1)); echo "FAILED: $name"; fi
-}
+source "$(dirname "$0")/checks.sh"
 
 # refuses CODE WORD ARGUMENTS...: exits with CODE, says one line with WORD on stderr, nothing on stdout, writes no file
 refuses() {
@@ -80,9 +70,6 @@ refuses 1 --look simulate missing.png -o out.png --curve '1-r^2' --look 0,0,-1 -
 refuses 1 --look simulate missing.png -o out.png --curve '1-r^2' --look 1,2
 refuses 1 .jpg simulate missing.png -o out.jpg --curve '1-r^2'
 
-same() { # NAME EXPECTED GOT
-  check "$1: expected '$2', got '$3'" [ "$2" = "$3" ]
-}
 # Known points: the parabola's f(1) = 0, so a direction at 90 degrees lands on radius 1; the axis on the centre.
 same "project the axis" "0 0 2 visible" "$(echo 0 0 -2 | "$domewarp" project --curve '1-r^2')"
 same "project 90 degrees" "1 0 3 visible" "$(echo 3 0 0 | "$domewarp" project --lens equidistant --fov 180 | sed 's/^0\.9999999999999[0-9]*/1/')"

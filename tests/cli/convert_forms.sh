@@ -5,20 +5,7 @@
 set -u
 domewarp=$1
 root=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-passes=0
-
-check() { # NAME CONDITION...
-  local name=$1
-  shift
-  if "$@"; then passes=$((passes + 1)); else failures=$((failures + 1)); echo "FAILED: $name"; fi
-}
-same() { # NAME EXPECTED GOT
-  check "$1: expected '$2', got '$3'" [ "$2" = "$3" ]
-}
+source "$(dirname "$0")/checks.sh"
 convert() { # OUT ARGUMENTS...
   local out=$1
   shift

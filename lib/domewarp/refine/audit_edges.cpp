@@ -46,18 +46,13 @@ private:
     block.depth_error = std::max(block.depth_error, static_cast<double>(edge.depth_error));
     block.uncertified += !edge.certified || edge.error * (1 - 1e-6f) > static_cast<float>(oracle_.options().tolerance);
     const SourceEdge source = edge.source == RefinedEdge::none ? SourceEdge{2, 0} : refined_.source_edges[edge.source];
-    if (is_source(edge)) faces += source.whole; // faces drawn as they are fit to it and to nothing smaller
+    if (is_whole_source_edge(refined_, edge)) faces += source.whole; // faces drawn as they are fit to it and to nothing smaller
     if (faces != 1 || is_rim(edge)) return;
     if (is_beyond(std::array{refined_.points[edge.a].mapped.image, refined_.points[edge.b].mapped.image}, half_extent_)) return; // its other face may have been dropped
     block.open.push_back({edge.a, edge.b, 1});
     if (source.faces == 1) return;
     ++block.unexplained;
     block.widest_gap = std::max(block.widest_gap, 2.0 * edge.error);
-  }
-
-  /// Whether it is a whole edge of the source.
-  bool is_source(const RefinedEdge& edge) const {
-    return edge.source != RefinedEdge::none && std::max(edge.a, edge.b) < refined_.source_points;
   }
 
   bool is_rim(const RefinedEdge& edge) const {

@@ -11,6 +11,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "domewarp/core/rounding.h"
+
 namespace domewarp {
 
 namespace {
@@ -22,11 +24,6 @@ constexpr double spare = 1.1;          ///< by how much more than the middle's d
 constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
 constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
-
-float rounded_up(double value) {
-  const float f = static_cast<float>(value);
-  return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
-}
 
 /// The angle that moves the rim by a tenth of the tolerance.
 double unnoticed_angle(const BranchMap& map, double tolerance) {

@@ -31,8 +31,6 @@ Range operator*(double f, const Range& a) { return f >= 0 ? Range{f * a.low, f *
 
 Range between(double a, double b) { return a < b ? Range{a, b} : Range{b, a}; }
 
-double magnitude(const Range& a) { return std::max(-a.low, a.high); }
-
 /// Range of (1 - s) from + s to, s in `share`, a subset of [0, 1].
 Range blend(const Range& from, const Range& to, const Range& share) {
   const auto at = [](double f, double t, double s) { return f * (1 - s) + t * s; };

@@ -109,14 +109,13 @@ std::vector<WholeFace> take_faces(const Soup& soup, const std::map<Ends, std::ui
 void wake_whole_faces(LevelState& state, const std::vector<std::uint32_t>& sides) {
   RefinedMesh& mesh = state.mesh;
   const Soup& soup = state.soup;
-  const auto is_source = [&](const RefinedEdge& edge) { return edge.source != RefinedEdge::none && std::max(edge.a, edge.b) < mesh.source_points; };
   std::map<Ends, std::uint32_t> wanted, known;
   for (const std::uint32_t e : sides)
-    if (is_source(mesh.edges[e]) && mesh.source_edges[mesh.edges[e].source].whole > 0) wanted[ends_of(mesh.edges[e].a, mesh.edges[e].b)] = e;
+    if (is_whole_source_edge(mesh, mesh.edges[e]) && mesh.source_edges[mesh.edges[e].source].whole > 0) wanted[ends_of(mesh.edges[e].a, mesh.edges[e].b)] = e;
   if (wanted.empty()) return;
   const std::vector<WholeFace> woken = take_faces(soup, wanted, mesh.whole);
   for (std::uint32_t e = 0; e < mesh.edges.size(); ++e)
-    if (is_source(mesh.edges[e])) known[ends_of(mesh.edges[e].a, mesh.edges[e].b)] = e;
+    if (is_whole_source_edge(mesh, mesh.edges[e])) known[ends_of(mesh.edges[e].a, mesh.edges[e].b)] = e;
   for (const WholeFace& face : woken) {
     const SoupFace& source = soup.faces[face.source];
     RefinedFace& added = mesh.faces.emplace_back(RefinedFace{source.point, source.wedge, {}, face.source});

@@ -15,6 +15,7 @@
 #include <numbers>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/rounding.h"
 #include "domewarp/transform/continuation.h"
 #include "domewarp/transform/image_map.h"
 #include "domewarp/transform/radial_table.h"
@@ -187,12 +188,6 @@ Weights weights_of(const Smooth& cell, double mean) {
   w.slope = rate * cell.d2r;
   w.jump = magnitude(rate) * cell.jump;
   return w;
-}
-
-float rounded_up(double value) {
-  if (std::isnan(value)) return std::numeric_limits<float>::infinity();
-  const float f = static_cast<float>(value);
-  return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
 }
 
 } // namespace

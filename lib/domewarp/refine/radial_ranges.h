@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace domewarp {
 struct Range {
   double low = 0, high = 0;
 };
+inline double magnitude(const Range& a) { return std::max(-a.low, a.high); }
 
 /// What the derivatives of the image G = R(theta) e_r and of the weight g(theta) are made of, over a range of angles.
 struct RadialRange {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -60,5 +61,10 @@ struct RefinedMesh {
   std::size_t levels = 0;
   bool stopped = false;          ///< by the limit on triangles
 };
+
+/// Whether an edge is a whole one of the source.
+inline bool is_whole_source_edge(const RefinedMesh& mesh, const RefinedEdge& edge) {
+  return edge.source != RefinedEdge::none && std::max(edge.a, edge.b) < mesh.source_points;
+}
 
 } // namespace domewarp

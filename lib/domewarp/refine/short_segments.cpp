@@ -14,8 +14,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widest = 0.1; ///< radians; the factors below hold up to there
 constexpr double slack = 1e-9;
 
-double magnitude(const Range& a) { return std::max(-a.low, a.high); }
-
 /// Of the angle theta with this half-angle index; infinite on the axes.
 double cotangent(double u) { return (1 - 2 * u) / (2 * u * (1 - u)); }
 

@@ -22,17 +22,13 @@
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/render/ray_gate.h"
 #include "domewarp/render/shading.h"
 #include "domewarp/render/triangle.h"
 
 namespace domewarp {
 
 namespace {
-
-/// How far edges are moved outwards in their plane, relative to the largest coordinate. Embree's float32 edge test errs
-/// by about 2e-7 of that; a plane seen at a slant of 1:150 still leaves the margin needed. For rays that do not begin at
-/// the eye it covers origins up to a hundred times as far from the eye as the triangle.
-constexpr double inflation = 3e-5;
 
 /// Largest coordinate of the geometry given to Embree, so that products of three stay far from float32's limits.
 constexpr int largest_exponent = 30;
@@ -63,33 +59,6 @@ auto rank(const RayHit& hit) {
 
 } // namespace
 
-namespace {
-
-/// All that a proposal of Embree's is judged by, in one place: it is looked up for every ray, and seldom cached.
-struct Facet {
-  Vec3 corners[3]; ///< eye space
-  std::uint32_t part = 0, triangle = 0;
-};
-
-/// What tells without a look at the facet that a proposal for a ray from the eye will be accepted.
-struct Gate {
-  float margin = std::numeric_limits<float>::infinity(); ///< least barycentric coordinate in Embree's triangle
-  float slack = 0;                                       ///< relative error of Embree's distance
-};
-
-Gate make_gate(const Facet& facet, const Look& look) {
-  const auto& v = facet.corners;
-  Gate gate{std::numeric_limits<float>::infinity(), static_cast<float>(distance_slack(v))};
-  if (look.alpha_mode != AlphaMode::opaque || (!look.double_sided && make_pyramid(v).volume >= 0)) return gate;
-  const double moved = inflation * std::max({largest(v[0]), largest(v[1]), largest(v[2])});
-  const double side = std::max({glm::distance(v[0], v[1]), glm::distance(v[1], v[2]), glm::distance(v[2], v[0])});
-  const double height = glm::length(glm::cross(v[1] - v[0], v[2] - v[0])) / side; // the least of three
-  if (height > 0) gate.margin = static_cast<float>(1e-4 + 1.5 * moved / height);
-  return gate;
-}
-
-} // namespace
-
 struct RayGeometry::Impl {
   const Parts* parts = nullptr;
   std::vector<Facet> facets;         ///< by Embree primitive
@@ -113,35 +82,6 @@ struct RayGeometry::Impl {
 };
 
 namespace {
-
-/// Proposals for one ray that will be accepted, the nearest few.
-class Waiting {
- public:
-  /// @param low, high of the distance, in Embree's units. @return false when there is no room
-  bool add(std::uint32_t primitive, float low, float high) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (entries_[i].low <= high) entries_[kept++] = entries_[i];
-    count_ = kept;
-    if (count_ == most) return false;
-    entries_[count_++] = {primitive, low};
-    return true;
-  }
-
-  template <typename Visit>
-  void for_each(Visit&& visit) const {
-    for (std::size_t i = 0; i < count_; ++i) visit(entries_[i].primitive);
-  }
-
- private:
-  static constexpr std::size_t most = 4;
-  struct Entry {
-    std::uint32_t primitive;
-    float low;
-  };
-  Entry entries_[most];
-  std::size_t count_ = 0;
-};
 
 /// What the filters need to know about the rays under way. Embree hands back a pointer to the first member; a ray's id
 /// is its index.

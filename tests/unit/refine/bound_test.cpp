@@ -17,20 +17,6 @@
 namespace domewarp {
 namespace {
 
-struct Case {
-  SurfaceOptions surface;
-  Projection projection;
-};
-
-std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const Projection projection : {Projection::perspective, Projection::orthographic})
-    for (const SurfaceOptions& surface : {curve("1-r^2"), curve("3-sqrt(4+6*r^2)"), curve("1-r"), curve("-r^3+r^2+r+1"), curve("sqrt(1-r^2)"),
-                                          lens(Lens::equidistant, 180), lens(Lens::equidistant, 240), lens(Lens::stereographic, 200)})
-      all.push_back({surface, projection});
-  return all;
-}
-
 std::string name(const Case& c) {
   return (c.surface.lens ? "lens" : c.surface.curve) + (c.projection == Projection::perspective ? " perspective" : " orthographic");
 }

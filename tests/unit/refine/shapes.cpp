@@ -99,4 +99,13 @@ double covered_solid_angle(const Scene& warped) {
   return sum;
 }
 
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const SurfaceOptions& surface : {curve("1-r^2"), curve("3-sqrt(4+6*r^2)"), curve("1-r"), curve("-r^3+r^2+r+1"), curve("sqrt(1-r^2)"),
+                                          lens(Lens::equidistant, 180), lens(Lens::equidistant, 240), lens(Lens::stereographic, 200)})
+      all.push_back({surface, projection});
+  return all;
+}
+
 } // namespace domewarp

@@ -25,6 +25,13 @@ Conversion convert_shape(const Scene& scene, const SurfaceOptions& surface, Refi
 SurfaceOptions curve(const std::string& expression);
 SurfaceOptions lens(Lens kind, double fov_deg);
 
+/// What bounds are tested on: surfaces of every kind, both projections.
+struct Case {
+  SurfaceOptions surface;
+  Projection projection;
+};
+std::vector<Case> cases();
+
 /// Largest distance in pixels between where the rasteriser puts a point of a written triangle and where the exact map
 /// (direct method) puts its source position, over a barycentric grid of `n` parts of every triangle.
 double measured_error_px(const Conversion& conversion, const SurfaceOptions& surface, Projection projection, const Raster& raster, int n);

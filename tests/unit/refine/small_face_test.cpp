@@ -32,20 +32,6 @@ Corners small_triangle(std::mt19937& random, int kind, double size) {
   return {at, at + length * along, at + length * (0.3 * glm::normalize(at) + 0.4 * along)};
 }
 
-struct Case {
-  SurfaceOptions surface;
-  Projection projection;
-};
-
-std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const Projection projection : {Projection::perspective, Projection::orthographic})
-    for (const SurfaceOptions& surface : {curve("1-r^2"), curve("3-sqrt(4+6*r^2)"), curve("1-r"), curve("-r^3+r^2+r+1"), curve("sqrt(1-r^2)"),
-                                          lens(Lens::equidistant, 180), lens(Lens::equidistant, 240), lens(Lens::stereographic, 200)})
-      all.push_back({surface, projection});
-  return all;
-}
-
 struct Stage {
   Surface surface;
   ImageMap map;
