@@ -11,7 +11,7 @@ packages=(
   libgtest-dev libgmock-dev libmuparser-dev libmpfr-dev libgmp-dev doxygen
 )
 # Where CI runs, also what the slow gates need.
-[ -z "${CI:-}" ] || packages+=(clang-16 libclang-rt-16-dev clang-tidy-16 debootstrap parallel)
+[ -z "${CI:-}" ] || packages+=(clang-16 libclang-rt-16-dev clang-tidy-16 debootstrap parallel chromium)
 missing=()
 for package in "${packages[@]}"; do
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
