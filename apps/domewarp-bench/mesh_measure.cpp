@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/quantile.h"
 #include "domewarp/refine/tolerances.h"
 #include "domewarp/refine/warped_vertex.h"
 #include "timing.h"
@@ -41,13 +42,6 @@ double written_error(const RefinedMesh& mesh, const RefinedFace& face, const Bra
 double edge_error(const MappedPoint& a, const MappedPoint& b, const BranchMap& exact, double t) {
   const Vec3 q = homogeneous(a.mapped) * (1 - t) + homogeneous(b.mapped) * t, eye = point_at(a.eye, b.eye, t);
   return is_shown(exact, eye) ? glm::length(dehomogenise(q) - exact.image(eye)) : 0;
-}
-
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Largest error of every edge that a face uses, -1 of the others.
@@ -126,8 +120,8 @@ Judged judge(const Refined& refined, const Display& display, const Raster& raste
     judged.face_violations += error > tolerance + rounding;
     judged.face_error = std::max(judged.face_error, error * px);
   }
-  judged.median_ratio = median(ratios);
-  judged.tight_ratio = median(tight);
+  if (!ratios.empty()) judged.median_ratio = quantile(ratios, 2);
+  if (!tight.empty()) judged.tight_ratio = quantile(tight, 2);
   return judged;
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "chart.h"
+#include "domewarp/core/markup.h"
 
 namespace domewarp::bench {
 
@@ -32,17 +33,6 @@ std::string number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);
   return text.data();
-}
-
-std::string escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else escaped += c;
-  }
-  return escaped;
 }
 
 struct Tick {
@@ -119,7 +109,7 @@ void draw_marker(std::ostream& out, std::size_t series, double x, double y, cons
 }
 
 void draw_text(std::ostream& out, double x, double y, const char* anchor, const std::string& text, const char* more = "") {
-  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\" " << more << '>' << escape(text) << "</text>\n";
+  out << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\" " << more << '>' << escape_markup(text) << "</text>\n";
 }
 
 void draw_ticks(std::ostream& out, const Scale& scale, bool vertical) {

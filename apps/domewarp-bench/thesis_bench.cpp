@@ -12,6 +12,7 @@
 
 #include "benches.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/quantile.h"
 #include "domewarp/refine/refine.h"
 #include "domewarp/refine/soup.h"
 #include "domewarp/scene/test_scenes.h"
@@ -217,9 +218,7 @@ DrawnError drawn_error(const Scene& warped, Projection projection, const Surface
       }
     }
   if (errors.empty()) return {};
-  const auto p99 = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 99 / 100);
-  std::ranges::nth_element(errors, p99);
-  return {std::ranges::max(errors), *p99};
+  return {std::ranges::max(errors), quantile(errors, 100)};
 }
 
 struct Refined {

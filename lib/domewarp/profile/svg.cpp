@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "domewarp/core/markup.h"
+
 namespace domewarp {
 
 namespace {
@@ -23,17 +25,10 @@ std::string fixed(double value, int digits) {
 
 std::string px(double value) { return fixed(value, 2); }
 
-std::string escape(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-    case '&': result += "&amp;"; break;
-    case '<': result += "&lt;"; break;
-    case '>': result += "&gt;"; break;
-    case '"': result += "&quot;"; break;
-    default: result += c >= ' ' && c < 0x7f ? c : '?'; // names of files may be in any encoding
-    }
-  }
+// Names of files may be in any encoding, the drawing is UTF-8.
+std::string printable(std::string_view text) {
+  std::string result(text);
+  std::replace_if(result.begin(), result.end(), [](char c) { return c < ' ' || c >= 0x7f; }, '?');
   return result;
 }
 
@@ -43,7 +38,7 @@ std::string shortened(std::string_view text, std::size_t most) {
 }
 
 std::string text_at(double x, double y, std::string_view text, std::string_view style = "") {
-  return "<text x=\"" + px(x) + "\" y=\"" + px(y) + "\" " + std::string(style) + ">" + escape(text) + "</text>\n";
+  return "<text x=\"" + px(x) + "\" y=\"" + px(y) + "\" " + std::string(style) + ">" + escape_markup(printable(text)) + "</text>\n";
 }
 
 // 1, 2 or 5 times a power of ten, so that about `count` steps fit into `range`.

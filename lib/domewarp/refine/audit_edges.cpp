@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/quantile.h"
 #include "domewarp/mesh/t_junctions.h"
 #include "domewarp/refine/emit.h"
 #include "domewarp/refine/picture_rectangle.h"
@@ -98,9 +99,7 @@ void add_errors(std::vector<float>& errors, const Raster& raster, RefineReport& 
   const double px = 1 / pixel_size(raster);
   double sum = 0;
   for (const float error : errors) sum += error;
-  const auto p99 = errors.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(errors.size() - 1));
-  std::nth_element(errors.begin(), p99, errors.end());
-  report.error_px_p99 = std::max(report.error_px_p99, *p99 * px);
+  report.error_px_p99 = std::max(report.error_px_p99, quantile(errors, 100) * px);
   report.error_px_mean = std::max(report.error_px_mean, sum / static_cast<double>(errors.size()) * px);
   report.error_px_max = std::max(report.error_px_max, *std::max_element(errors.begin(), errors.end()) * px);
 }

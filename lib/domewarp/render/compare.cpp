@@ -15,6 +15,7 @@
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/quantile.h"
 
 namespace domewarp {
 
@@ -241,10 +242,7 @@ void summarise_displacement(int width, CompareReport& report) {
   d.measured = values.size();
   if (values.empty()) return;
   d.rms = std::sqrt(squares / static_cast<double>(values.size()));
-  // At most one pixel in a thousand lies above.
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - values.size() / 1000);
-  std::nth_element(values.begin(), nth, values.end());
-  d.p999 = *nth;
+  d.p999 = quantile(values, 1000);
 }
 
 void summarise_depth(int width, CompareReport& report) {

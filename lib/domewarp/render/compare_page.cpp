@@ -7,6 +7,7 @@
 #include <span>
 #include <sstream>
 
+#include "domewarp/core/markup.h"
 #include "domewarp/profile/plot.h"
 #include "domewarp/render/canvas.h"
 
@@ -41,18 +42,6 @@ addEventListener('load', () => { // says that every picture is there
 });
 )";
 
-std::string escape(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  return result;
-}
-
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -67,7 +56,7 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 
 std::string image(const Pixels& picture, int widest, const std::string& alt, const std::string& attributes = "") {
   const Pixels small = shrink(picture, widest);
-  return "<img alt=\"" + escape(alt) + "\" " + attributes + " src=\"data:image/png;base64," +
+  return "<img alt=\"" + escape_markup(alt) + "\" " + attributes + " src=\"data:image/png;base64," +
          base64(encode_png(small.width, small.height, 4, small.rgba)) + "\">";
 }
 
@@ -144,9 +133,9 @@ std::string inline_svg(const Surface& surface) {
 
 std::string compare_page(const ComparePage& page, const CompareReport& report, const Surface& surface, int widest) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
-  const std::string title = escape(page.warped) + " compared with " + escape(page.scene);
+  const std::string title = escape_markup(page.warped) + " compared with " + escape_markup(page.scene);
   html += title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n<p>" + std::to_string(page.rasterised.width) + " &times; " +
-          std::to_string(page.rasterised.height) + " pixels, tolerance " + number(page.tolerance_px) + " px, rasterised by " + escape(page.renderer) + ".</p>\n";
+          std::to_string(page.rasterised.height) + " pixels, tolerance " + number(page.tolerance_px) + " px, rasterised by " + escape_markup(page.renderer) + ".</p>\n";
   html += section("Figures", figures(page, report));
   html += section("Both pictures", slider(page, widest));
   html += section("Displacement", image(page.displacement, widest, "displacement in pixels") + "<figcaption>Distance of everything from its exact place, scale below the picture." +

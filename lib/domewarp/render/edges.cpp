@@ -11,6 +11,7 @@
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/quantile.h"
 #include "domewarp/render/shading.h"
 
 namespace domewarp {
@@ -113,12 +114,6 @@ std::optional<Measured> measure(const Pair& pair, int column, int row, int axis)
   return Measured{normal / size, moved / size, moved};
 }
 
-double quantile(std::vector<double> values, double share) {
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
 /// Least squares for normal . bias = distance.
 Vec2 fit_bias(const std::vector<Measured>& all) {
   glm::dmat2 sums(0);
@@ -157,9 +152,9 @@ EdgeReport compare_edges(const Pixels& picture, const Pixels& reference, const S
     report.within_pixel += std::abs(m.distance) <= 1;
   }
   report.within_pixel /= double(all.size());
-  report.median = quantile(distances, 0.5);
-  report.p99 = quantile(distances, 0.99);
-  report.median_view_px = quantile(in_view, 0.5);
+  report.median = quantile(distances, 2);
+  report.p99 = quantile(distances, 100);
+  report.median_view_px = quantile(in_view, 2);
   report.bias = fit_bias(all);
   return report;
 }

@@ -2,11 +2,13 @@
 //
 // A picture in which everything may be displaced by a bound shows, at a pixel, any surface that nothing hides somewhere
 // within the bound around the pixel. So the rays around a pixel decide: at its centre, at the place of what it shows,
-// and on two circles, the outer one with the bound as its radius.
+// and on two circles, the outer one with the bound as its radius. Where those find a flaw, hundreds more over the whole
+// disc look for what they may have missed: a sliver, or a hole in a masked texture.
 #include "domewarp/render/pixel_judge.h"
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -56,14 +58,13 @@ struct PixelJudge::Probe {
 };
 
 /// The rays around a pixel, traced as they are asked for: the centre first, then the circle of the bound, then one of
-/// half its radius, each turned by half a step against the other.
+/// half its radius, each turned by half a step against the other; then Vogel's spiral, whose rays lie evenly, a fourteenth
+/// of the bound apart.
 class PixelJudge::Probes {
  public:
-  static constexpr int outer = 16, inner = 8, count = 1 + outer + inner;
+  static constexpr int outer = 16, inner = 8, few = 1 + outer + inner, spiral = 512, count = few + spiral;
 
-  Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {
-    probes_.reserve(count); // references stay valid while others are traced
-  }
+  Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {}
 
   /// Beyond r_max there are no crossings, and the direction is zero.
   const Probe& operator[](std::size_t i) {
@@ -71,9 +72,10 @@ class PixelJudge::Probes {
     return probes_[i];
   }
 
+  /// Whether one of the first `most` passes a test.
   template <typename Test>
-  bool any(Test&& test) {
-    for (std::size_t i = 0; i < count; ++i)
+  bool any(Test&& test, std::size_t most = count) {
+    for (std::size_t i = 0; i < most; ++i)
       if (test((*this)[i])) return true;
     return false;
   }
@@ -81,7 +83,10 @@ class PixelJudge::Probes {
  private:
   Probe trace(int i) const {
     Vec2 offset(0);
-    if (i > 0) {
+    if (i >= few) {
+      const double angle = (i - few) * std::numbers::pi * (3 - std::sqrt(5.0)); // golden
+      offset = judge_.bound_px_ * std::sqrt((i - few + 0.5) / spiral) * Vec2(std::cos(angle), std::sin(angle));
+    } else if (i > 0) {
       const bool on_outer = i <= outer;
       const double turn = on_outer ? double(i - 1) / outer : (i - outer - 0.5) / inner;
       const double angle = 2 * std::numbers::pi * turn;
@@ -97,7 +102,7 @@ class PixelJudge::Probes {
 
   const PixelJudge& judge_;
   int column_, row_;
-  std::vector<Probe> probes_;
+  std::deque<Probe> probes_; // references stay valid while others are traced
 };
 
 PixelJudge::PixelJudge(const Surface& surface, const Raster& raster, CrossingsAlong crossings, double bound_px,
@@ -154,15 +159,18 @@ Verdict PixelJudge::judge_drawn(int column, int row, const Vec3& p, std::uint32_
     if (gap <= depth_bound_ * distance) return first.object == sheet->object ? Verdict::same : Verdict::depth_tie;
   }
   if (!is_hidden(own_crossings, length, position_rounding)) return Verdict::outline;
-  const auto shows = [&](double margin) {
-    return probes.any([&](const Probe& probe) {
-      if (probe.direction == Vec3(0)) return false;
-      const double at = sheet->distance(probe.direction);
-      return at > 0 && !is_hidden(probe.crossings, at, margin);
-    });
+  const auto shows = [&](double margin, std::size_t most) {
+    return probes.any(
+        [&](const Probe& probe) {
+          if (probe.direction == Vec3(0)) return false;
+          const double at = sheet->distance(probe.direction);
+          return at > 0 && !is_hidden(probe.crossings, at, margin);
+        },
+        most);
   };
-  if (shows(distance_rounding)) return Verdict::outline;
-  if (shows(depth_bound_)) return Verdict::depth_tie;
+  if (shows(distance_rounding, Probes::few)) return Verdict::outline;
+  if (shows(depth_bound_, Probes::few)) return Verdict::depth_tie;
+  if (shows(depth_bound_, Probes::count)) return Verdict::outline;
   // What hides it is cut off at the rim, by a chord of its own.
   if (probes.any([](const Probe& probe) { return probe.direction == Vec3(0); })) return Verdict::outline;
   for (const Crossing& crossing : centre.crossings) {
