@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 if [ "$kind" = shared ]; then
-  cmake -S "$root" -B "$build/shared" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON -DDOMEWARP_TESTS=OFF >/dev/null
+  cmake -S "$root" -B "$build/shared" -G Ninja -DCMAKE_BUILD_TYPE=None -DBUILD_SHARED_LIBS=ON -DDOMEWARP_TESTS=OFF >/dev/null
   cmake --build "$build/shared"
   build=$build/shared
 fi
