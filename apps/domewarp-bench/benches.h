@@ -42,7 +42,7 @@ inline constexpr Bench benches[] = {
     {"live", "Frames per second of warping all vertices for a moving eye, and how far it may move before refining again.", run_live_bench},
     {"map", "Batches of points: time per vertex against error, beside a copy of the same bytes.", run_map_bench},
     {"mesh", "Refinement: triangles against goals, rivals and a lower bound, true against certified error, speed, growth, what skipping saves.", run_mesh_bench},
-    {"render", "Primary rays per second of the reference ray tracer beside Embree's own on the same rays.", run_render_bench},
+    {"render", "Both renderers: time and memory against pixels; primary rays per second beside Embree's own on the same rays.", run_render_bench},
     {"thesis", "Tables 2 and 3, Figures 25 and 26 of the thesis: frames per second and points, beside its figures.", run_thesis_bench},
 };
 

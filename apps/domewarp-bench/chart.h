@@ -44,6 +44,11 @@ struct Plot {
   std::vector<Series> series;
 };
 
+std::string three_digits(double value);
+
+/// Slope of the least-squares line through (log x, log y): 1 is linear growth.
+double log_log_slope(const std::vector<Vec2>& points);
+
 /// Aligned columns under the title, numbers with four significant digits.
 std::string to_text(const Table& table);
 /// A line of keys, then a line per row; numbers round trip.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "child_process.h"
 #include "domewarp/convert/job.h"
 #include "domewarp/core/errors.h"
+#include "domewarp/scene/test_scenes.h"
 #include "timing.h"
 
 namespace domewarp::bench {
@@ -47,6 +49,50 @@ JobOptions job_options() {
   options.convert.view.eye = Vec3(0);
   options.convert.view.forward = Vec3(0, 0, -1);
   return options;
+}
+
+struct Converted {
+  double seconds = 0, error_px = 0;
+  std::size_t triangles = 0;
+};
+
+/// Whole conversions of a bundled scene against the error they are asked for, least time of a few rounds.
+void measure_errors(const Options& options, Result& result) {
+  Table table{"convert_errors", "toys on 1-r^2 at 4096 rows, from file to file: what a smaller error costs, least of a few rounds",
+              {{"tolerance_px", "tolerance px"}, {"error_px", "certified px"}, {"triangles_out", "triangles"}, {"ms", "ms"}, {"ratio", "time / at 4 px"}},
+              {}};
+  Plot plot{"convert_time_error", "A whole conversion: time against error (toys, 1-r^2)", {"certified error (px of 4096 rows)", true}, {"ms", true}, {{"convert", {}}}};
+  const Folder folder;
+  const fs::path input = folder.path / "toys.glb", output = folder.path / "out.glb";
+  in_child([&] {
+    for (const TestScene& test : make_test_scenes())
+      if (test.name == "toys") write_scene(test.scene, input);
+    return Told{};
+  });
+  double first = 0;
+  for (const double tolerance : options.quick ? std::vector<double>{4, 2} : std::vector<double>{4, 2, 1, 0.5, 0.2, 0.1, 0.05}) {
+    options.progress("convert at " + three_digits(tolerance) + " px");
+    JobOptions job;
+    job.convert.surface.curve = "1-r^2";
+    job.convert.raster = {4096, 4096};
+    job.convert.refine.tolerance_px = tolerance;
+    const Converted best = in_child([&] {
+      Converted told;
+      told.seconds = std::numeric_limits<double>::infinity();
+      for (int round = 0; round < (options.quick ? 1 : 5); ++round) {
+        ConvertReport report;
+        told.seconds = std::min(told.seconds, seconds([&] { report = run_job(input, output, job); }));
+        told.error_px = report.refine.error_px_max;
+        told.triangles = report.refine.triangles_out;
+      }
+      return told;
+    });
+    if (first == 0) first = best.seconds;
+    table.rows.push_back({tolerance, best.error_px, static_cast<double>(best.triangles), 1000 * best.seconds, best.seconds / first});
+    plot.series[0].points.emplace_back(best.error_px, 1000 * best.seconds);
+  }
+  result.tables.push_back(std::move(table));
+  result.plots.push_back(std::move(plot));
 }
 
 Told convert_only(const fs::path& input, const fs::path& output) {
@@ -88,6 +134,12 @@ Row measure(std::size_t triangles, int rounds) {
   return row;
 }
 
+std::vector<Vec2> from_10000(const Series& series) {
+  std::vector<Vec2> points = series.points;
+  std::erase_if(points, [](const Vec2& p) { return p.x < 10000; });
+  return points;
+}
+
 } // namespace
 
 Result run_convert_bench(const Options& options) {
@@ -111,7 +163,12 @@ Result run_convert_bench(const Options& options) {
     memory.series[0].points.emplace_back(in, peak);
     memory.series[1].points.emplace_back(in, decoded);
   }
-  return {{table}, {time, memory}, {}};
+  Result result{{table}, {time, memory}, {}};
+  if (!options.quick)
+    result.notes.push_back("Slope of the log-log fit from 10^4 triangles on: time " + three_digits(log_log_slope(from_10000(time.series[0]))) + ", peak memory " +
+                           three_digits(log_log_slope(from_10000(memory.series[0]))) + ".");
+  measure_errors(options, result);
+  return result;
 }
 
 } // namespace domewarp::bench

@@ -73,6 +73,28 @@ Plot draw_rivals(const Table& table) {
   return plot;
 }
 
+/// Triangles (quantity 0) or time (1) of the ways to refine, against the error they end with.
+Plot draw_tolerances(const Table& table, int quantity) {
+  const bool time = quantity == 1;
+  Plot plot{time ? "mesh_time_error" : "mesh_triangles_error",
+            time ? "Refinement: time against error (box, 1-r^2)" : "Refinement: triangles against error (box, 1-r^2)",
+            {"largest error (px of 1024 rows)", true},
+            {time ? "ms" : "triangles", true},
+            {{"adaptive, certified", {}}, {"by length (the thesis)", {}}, {"uniform", {}}, {"adaptive, orthographic", {}}}};
+  if (!time) plot.series.push_back({"N*, orthographic", {}});
+  const auto value = [](const Cell& cell) { return std::get<double>(cell); };
+  const auto reached = [](const Cell& cell) { return std::get<std::string>(cell) == "yes"; };
+  for (const auto& row : table.rows) {
+    const double error = value(row[1]);
+    plot.series[0].points.emplace_back(error, value(row[2 + quantity]));
+    if (reached(row[6])) plot.series[1].points.emplace_back(error, value(row[4 + quantity]));
+    if (reached(row[9])) plot.series[2].points.emplace_back(error, value(row[7 + quantity]));
+    plot.series[3].points.emplace_back(value(row[10]), value(row[11 + quantity]));
+    if (!time) plot.series[4].points.emplace_back(value(row[0]), value(row[13]));
+  }
+  return plot;
+}
+
 } // namespace
 
 Result run_mesh_bench(const Options& options) {
@@ -81,6 +103,8 @@ Result run_mesh_bench(const Options& options) {
   count_box(options, result);
   result.tables.push_back(compare_with_rivals(options));
   result.plots.push_back(draw_rivals(result.tables.back()));
+  result.tables.push_back(sweep_tolerances(options));
+  for (const int quantity : {0, 1}) result.plots.push_back(draw_tolerances(result.tables.back(), quantity));
   result.tables.push_back(measure_skips(options));
   return result;
 }

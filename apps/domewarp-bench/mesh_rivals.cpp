@@ -6,8 +6,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "bench_scenes.h"
 #include "domewarp/scene/test_scenes.h"
+#include "lower_bound.h"
 #include "mesh_measure.h"
+#include "timing.h"
 
 namespace domewarp::bench {
 
@@ -18,8 +21,8 @@ constexpr double large_angle = 10 * 0.017453292519943295; ///< radians
 
 /// How a rival got to the error wanted: interpolated between the coarser and the finer of its meshes, which is in its favour.
 struct Reached {
-  double triangles = 0;
-  bool reached = false; ///< false: `triangles` are those of its finest mesh, which is still worse
+  double triangles = 0, seconds = 0;
+  bool reached = false; ///< false: the figures are those of its finest mesh, which is still worse
 };
 
 /// Whether some side of the face is seen under more than the angle that makes it large.
@@ -45,22 +48,27 @@ public:
 
   /// Tries finer and finer meshes. @param finer options of step 0, 1, ...
   Reached reach(double wanted, const std::function<IsotropicOptions(int)>& finer) const {
-    double triangles = 0, error = 0;
+    Reached now;
+    double error = 0;
     for (int step = 0; step < 60; ++step) {
-      const double triangles_before = triangles, error_before = error;
+      const Reached before = now;
+      const double error_before = error;
       IsotropicReport report;
-      const RefinedMesh mesh =
-          subdivide_isotropic(soup_, display_.surface, display_.map, Projection::perspective, finer(step), most_, report);
-      if (report.stopped) return {triangles_before, false};
-      triangles = static_cast<double>(mesh.faces.size());
-      if (triangles == triangles_before && mesh.levels >= static_cast<std::size_t>(most_lod)) return {triangles, false}; // nothing may be divided more often
+      RefinedMesh mesh;
+      now.seconds = seconds([&] {
+        mesh = subdivide_isotropic(soup_, display_.surface, display_.map, Projection::perspective, finer(step), most_, report);
+      });
+      if (report.stopped) return before;
+      now.triangles = static_cast<double>(mesh.faces.size());
+      if (now.triangles == before.triangles && mesh.levels >= static_cast<std::size_t>(most_lod)) return now; // nothing may be divided more often
       error = sampled_error(mesh, display_, raster_, Projection::perspective, [](const RefinedFace&) { return true; });
       if (error > wanted) continue;
-      if (step == 0 || error_before <= error) return {triangles, true};
+      if (step == 0 || error_before <= error) return {now.triangles, now.seconds, true};
       const double share = std::log(error_before / wanted) / std::log(error_before / error);
-      return {triangles_before * std::pow(triangles / triangles_before, share), true};
+      const auto between = [&](double coarse, double fine) { return coarse * std::pow(fine / coarse, share); };
+      return {between(before.triangles, now.triangles), between(before.seconds, now.seconds), true};
     }
-    return {triangles, false};
+    return now;
   }
 
   Reached by_length(double wanted) const {
@@ -115,6 +123,48 @@ Table compare_with_rivals(const Options& options) {
         add_row(table, test.name, display, large ? "large" : "all", triangles, error, rival.by_length(error), rival.alike(error));
       }
     }
+  return table;
+}
+
+Table sweep_tolerances(const Options& options) {
+  const Raster raster = options.quick ? Raster{256, 256} : Raster{1024, 1024};
+  const std::size_t most = options.quick ? 50'000 : 2'000'000;
+  const int rounds = options.quick ? 1 : 3;
+  Table table{"mesh_tolerances",
+              "The box on 1-r^2, r_max 1.3, at " + std::to_string(raster.height) + " rows: triangles and time against error, any depth, least of " +
+                  std::to_string(rounds) + ". The rivals are taken at the error that the adaptive mesh has, measured; within " + std::to_string(most) + " triangles",
+              {{"tolerance_px", "tolerance px"}, {"error_px", "error px"}, {"adaptive", "adaptive"}, {"adaptive_ms", "ms"},
+               {"by_length", "by length"}, {"by_length_ms", "ms"}, {"by_length_reached", "reached"},
+               {"uniform", "uniform"}, {"uniform_ms", "ms"}, {"uniform_reached", "reached"},
+               {"orthographic_error_px", "error px"}, {"orthographic", "orthographic"}, {"orthographic_ms", "ms"}, {"lower_bound", "N*"}},
+              {}};
+  const auto& [name, surface] = surfaces()[1];
+  const Display display = make_display(name, surface, raster);
+  const auto adapt = [&](double tolerance, Projection projection) {
+    RefineOptions refine;
+    refine.tolerance_px = tolerance;
+    refine.depth_tolerance = 1e30;
+    refine.projection = projection;
+    Refined refined = refine_whole(make_soup(box(), View{}, {}), display, raster, refine);
+    for (int round = 1; round < rounds; ++round)
+      refined.seconds = std::min(refined.seconds, refine_whole(make_soup(box(), View{}, {}), display, raster, refine).seconds);
+    return refined;
+  };
+  const auto triangles = [](const Refined& refined) { return static_cast<double>(refined.mesh.faces.size()); };
+  for (const double tolerance : options.quick ? std::vector<double>{4, 1} : std::vector<double>{4, 2, 1, 0.5, 0.2, 0.1, 0.05}) {
+    options.progress("box at " + std::to_string(tolerance) + " px");
+    const Refined adaptive = adapt(tolerance, Projection::perspective), orthographic = adapt(tolerance, Projection::orthographic);
+    const auto measured = [&](const Refined& refined, Projection projection) {
+      return sampled_error(refined.mesh, display, raster, projection, [](const RefinedFace&) { return true; });
+    };
+    const double error = measured(adaptive, Projection::perspective);
+    const Rival rival(adaptive.soup, display, raster, most);
+    const Reached by_length = rival.by_length(error), alike = rival.alike(error);
+    const double least = least_triangles(box(), display.exact.branches.front(), tolerance * pixel_size(raster), options.quick ? 6 : 24);
+    table.rows.push_back({tolerance, error, triangles(adaptive), 1000 * adaptive.seconds, by_length.triangles, 1000 * by_length.seconds,
+                          by_length.reached ? "yes" : "no", alike.triangles, 1000 * alike.seconds, alike.reached ? "yes" : "no",
+                          measured(orthographic, Projection::orthographic), triangles(orthographic), 1000 * orthographic.seconds, least});
+  }
   return table;
 }
 

@@ -51,25 +51,6 @@ Told run(const Scene& scene, const Job& job, int rounds) {
   return told;
 }
 
-/// Slope of the least-squares line through (log x, log y).
-double slope(const std::vector<Vec2>& points) {
-  Vec2 mean(0);
-  for (const Vec2& p : points) mean += Vec2(std::log(p.x), std::log(p.y)) / double(points.size());
-  double xx = 0, xy = 0;
-  for (const Vec2& p : points) {
-    const Vec2 d = Vec2(std::log(p.x), std::log(p.y)) - mean;
-    xx += d.x * d.x;
-    xy += d.x * d.y;
-  }
-  return xy / xx;
-}
-
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 } // namespace
 
 void measure_growth(const Options& options, Result& result) {
@@ -106,7 +87,7 @@ void measure_growth(const Options& options, Result& result) {
   result.tables.push_back(std::move(table));
   result.plots.push_back(std::move(plot));
   result.notes.push_back("Slope of the log-log fit over " + three_digits(times.front().x) + " to " + three_digits(times.back().x) + " triangles: CPU time " +
-                         three_digits(slope(times)) + ", peak memory " + three_digits(slope(memory)) + ".");
+                         three_digits(log_log_slope(times)) + ", peak memory " + three_digits(log_log_slope(memory)) + ".");
 }
 
 Table measure_skips(const Options& options) {

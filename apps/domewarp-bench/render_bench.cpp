@@ -17,6 +17,7 @@
 #include "domewarp/render/ray_trace.h"
 #include "domewarp/scene/raster.h"
 #include "domewarp/transform/image_map.h"
+#include "render_growth.h"
 #include "timing.h"
 
 namespace domewarp::bench {
@@ -186,6 +187,8 @@ std::vector<std::string> instruction_sets() {
 } // namespace
 
 Result run_render_bench(const Options& options) {
+  Result result;
+  measure_pixels(options, result); // starts processes, so before any thread runs
   const Scene scene = make_scene(options.quick ? 20 : 707);
   const Raster raster = options.quick ? Raster{64, 64} : Raster{1024, 1024};
   SurfaceOptions display;
@@ -212,7 +215,8 @@ Result run_render_bench(const Options& options) {
       table.rows.push_back({set, names[i], 1e9 * speeds[i].seconds / double(directions.size()),
                             speeds[i].seconds / speeds[2].seconds, double(speeds[i].missed)});
   }
-  return {{table}, {}, {}};
+  result.tables.push_back(std::move(table));
+  return result;
 }
 
 } // namespace domewarp::bench

@@ -46,6 +46,24 @@ std::vector<std::size_t> widths_of(const Table& table) {
 
 } // namespace
 
+std::string three_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+double log_log_slope(const std::vector<Vec2>& points) {
+  Vec2 mean(0);
+  for (const Vec2& p : points) mean += Vec2(std::log(p.x), std::log(p.y)) / double(points.size());
+  double xx = 0, xy = 0;
+  for (const Vec2& p : points) {
+    const Vec2 d = Vec2(std::log(p.x), std::log(p.y)) - mean;
+    xx += d.x * d.x;
+    xy += d.x * d.y;
+  }
+  return xy / xx;
+}
+
 std::string to_text(const Table& table) {
   const std::vector<std::size_t> widths = widths_of(table);
   std::string text = table.title + "\n";
