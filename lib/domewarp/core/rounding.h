@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace domewarp {
@@ -11,7 +13,9 @@ inline float rounded_up(double value) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   if (std::isnan(value)) return infinity;
   const float f = static_cast<float>(value);
-  return static_cast<double>(f) >= value ? f : std::nextafter(f, infinity);
+  if (static_cast<double>(f) >= value) return f;
+  const auto bits = std::bit_cast<std::uint32_t>(f); // +0 or a number other than -0, so the next float has the next bits
+  return std::bit_cast<float>(f < 0 ? bits - 1 : bits + 1);
 }
 
 } // namespace domewarp

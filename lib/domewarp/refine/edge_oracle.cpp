@@ -132,7 +132,7 @@ bool EdgeOracle::is_sagging_chord(const MappedPoint& a, const MappedPoint& b) co
   return false;
 }
 
-EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b) const {
+EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const {
   EdgeDecision decision;
   bool outside = false;
   decision.split = split_at_boundary(a, b, outside);
@@ -151,7 +151,7 @@ EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b) cons
     return decision;
   }
   if (glm::length(b.eye - a.eye) <= smallest_angle * std::min(rho_a, rho_b)) return decision;
-  return split_by_criterion(split_by_error(a, b), a, b);
+  return split_by_criterion(split_by_error(a, b, known), a, b);
 }
 
 // A jump along the side of a sliver can ask for ever for vertices ever nearer to that side. Halving ends sooner, so
@@ -195,10 +195,10 @@ EdgeOracle::Piece EdgeOracle::piece(const DrawnPoint& p, const DrawnPoint& q) co
   return {bend.second, peak_error(p.off, q.off, bend.second, p.weight, q.weight), depth};
 }
 
-EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b) const {
+EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const {
   EdgeDecision decision;
   const DrawnPoint from = drawn(a), to = drawn(b);
-  const EdgeBend whole = bound_.edge(a, b, from.weight, to.weight);
+  const EdgeBend whole = known != nullptr ? *known : bound_.edge(a, b, from.weight, to.weight);
   const double least = std::min(from.weight, to.weight);
   const auto is_good = [&] { return decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance; };
   decision.error = rounded_up(peak_error(0, 0, whole.second, from.weight, to.weight));
@@ -303,12 +303,13 @@ double EdgeOracle::image_extent(const MappedPoint& a, const MappedPoint& b, cons
   return high - low + high * turn;
 }
 
-double EdgeOracle::diagonal_error(const MappedPoint& a, const MappedPoint& b) const {
+DiagonalBound EdgeOracle::diagonal(const MappedPoint& a, const MappedPoint& b) const {
   for (const MappedPoint* p : {&a, &b})
-    if (*std::min_element(p->sides.begin(), p->sides.end()) < 0) return glm::length(b.eye - a.eye) * 1e100;
+    if (*std::min_element(p->sides.begin(), p->sides.end()) < 0) return {glm::length(b.eye - a.eye) * 1e100, std::nullopt};
   // Beside a fold there is no bound: an edge is at most about as far off as it is long, and less than one to the outside.
   const double wa = a.mapped.weight, wb = b.mapped.weight;
-  return std::min(peak_error(0, 0, bound_.edge(a, b, wa, wb).second, wa, wb), glm::length(a.mapped.image - b.mapped.image));
+  const EdgeBend bend = bound_.edge(a, b, wa, wb);
+  return {std::min(peak_error(0, 0, bend.second, wa, wb), glm::length(a.mapped.image - b.mapped.image)), bend};
 }
 
 } // namespace domewarp

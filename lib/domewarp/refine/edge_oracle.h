@@ -54,6 +54,12 @@ struct SideBound {
   double middle = -1, arch = 0;
 };
 
+/// Of an edge that is not in the mesh yet.
+struct DiagonalBound {
+  double error = 0;              ///< image units
+  std::optional<EdgeBend> bend;  ///< none where an end has no image
+};
+
 /// Whether what is drawn on an edge asks for a vertex at its middle; `a` precedes `b`. A pure function of the two points,
 /// called from many threads.
 using EdgeCriterion = std::function<bool(const MappedPoint& a, const MappedPoint& b)>;
@@ -78,7 +84,8 @@ public:
              const OracleOptions& options);
 
   /// @param a precedes b
-  EdgeDecision decide(const MappedPoint& a, const MappedPoint& b) const;
+  /// @param known what diagonal() found out about the edge, or null
+  EdgeDecision decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known = nullptr) const;
 
   /// Sides and image of a point. `on`: index of a boundary it is known to lie on, or -1.
   MappedPoint locate(const Vec3& eye, int on = -1) const;
@@ -86,8 +93,9 @@ public:
   /// The middle of an edge that nothing else asks to split; none where it would coincide with an end or be clipped.
   std::optional<MappedPoint> middle(const MappedPoint& a, const MappedPoint& b) const;
 
-  /// Error bound of an edge that is not in the mesh yet, without evaluating the map: for choosing diagonals.
-  double diagonal_error(const MappedPoint& a, const MappedPoint& b) const;
+  /// Bounds of an edge that is not in the mesh yet, without evaluating the map: for choosing diagonals.
+  /// @param a precedes b
+  DiagonalBound diagonal(const MappedPoint& a, const MappedPoint& b) const;
 
   /// Whether the error bound of a face, all of it, is within the tolerance.
   /// @param side k is between corners k and k + 1
@@ -131,7 +139,7 @@ private:
   Piece piece(const DrawnPoint& p, const DrawnPoint& q) const;
   Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const;
   EdgeDecision split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const;
-  EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b) const;
+  EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const;
   EdgeDecision split_by_samples(const MappedPoint& a, const MappedPoint& b) const;
 
   const BranchMap& map_;

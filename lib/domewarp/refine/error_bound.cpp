@@ -29,43 +29,51 @@ Range operator*(const Range& a, const Range& b) {
 
 Range operator*(double f, const Range& a) { return f >= 0 ? Range{f * a.low, f * a.high} : Range{f * a.high, f * a.low}; }
 
-Range between(double a, double b) { return a < b ? Range{a, b} : Range{b, a}; }
+Range between(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Range of (1 - s) from + s to, s in `share`, a subset of [0, 1].
-Range blend(const Range& from, const Range& to, const Range& share) {
-  const auto at = [](double f, double t, double s) { return f * (1 - s) + t * s; };
-  return {std::min(at(from.low, to.low, share.low), at(from.low, to.low, share.high)),
-          std::max(at(from.high, to.high, share.low), at(from.high, to.high, share.high))};
+/// The product with a range that is not negative.
+Range scaled(const Range& factor, const Range& a) {
+  return {std::min(factor.low * a.low, factor.high * a.low), std::max(factor.low * a.high, factor.high * a.high)};
 }
+
+/// Range of from + s (to - from), s in `share`, a subset of [0, 1].
+Range blend(const Range& from, const Range& to, const Range& share) {
+  const double low = to.low - from.low, high = to.high - from.high;
+  return {from.low + std::min(low * share.low, low * share.high), from.high + std::max(high * share.low, high * share.high)};
+}
+
+double norm(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// The heading along an edge: x = cos(chi) against the outward meridian, y = |sin(chi)|; and the angles passed.
 struct Heading {
-  Range x{-1, 1}, y{0, 1}, y2{0, 1};
+  Range x{-1, 1}, y{0, 1};
   double u_low = 0, u_high = 1;
 };
 
 /// With P = sin(theta) cos(chi) = -d cos(theta)/dpsi and N = sin(theta) sin(chi), which is constant, P^2 + N^2 =
 /// sin^2(theta). P is monotone where cos(theta) keeps its sign, theta is extreme where P vanishes.
-Heading heading(const Direction& a, const Direction& b, double pa, double pb, double dz, double normal_z, double area) {
+/// @param at_a,at_b P at the ends, @param n |N|
+Heading heading(const Direction& a, const Direction& b, double at_a, double at_b, double n) {
   Heading h;
-  std::tie(h.u_low, h.u_high) = std::minmax(a.u, b.u);
-  const double za = -a.eye.z, zb = -b.eye.z;
-  const double at_a = (za * pa / a.rho - a.rho * dz) / area, at_b = (zb * pb / b.rho - b.rho * dz) / area;
-  const double n = std::min(1.0, std::abs(normal_z) / area), n2 = n * n, top = std::sqrt(1 - n2);
+  h.u_low = std::min(a.u, b.u);
+  h.u_high = std::max(a.u, b.u);
+  const double n2 = n * n;
   Range p = between(at_a, at_b);
-  if (za * zb < 0) (za > 0 ? p.high : p.low) = za > 0 ? top : -top;
-  if (p.low < 0 && p.high > 0) {
-    const bool is_nearest = at_a < at_b; // theta falls, then rises
-    (is_nearest ? h.u_low : h.u_high) = half_angle_index(n, is_nearest ? top : -top, 1);
+  const bool passes_right_angle = a.eye.z * b.eye.z < 0;
+  if (passes_right_angle || (p.low < 0 && p.high > 0)) {
+    const double top = std::sqrt(1 - n2);
+    if (passes_right_angle) (a.eye.z < 0 ? p.high : p.low) = a.eye.z < 0 ? top : -top;
+    if (p.low < 0 && p.high > 0) {
+      const bool is_nearest = at_a < at_b; // theta falls, then rises
+      (is_nearest ? h.u_low : h.u_high) = half_angle_index(n, is_nearest ? top : -top, 1);
+    }
   }
   p.low -= slack;
   p.high += slack;
-  const auto cosine = [&](double q) { return q / std::sqrt(std::max(q * q + n2, 1e-300)); };
-  h.x = {cosine(p.low) - slack, cosine(p.high) + slack};
-  const double least = h.x.low * h.x.high <= 0 ? 0 : std::min(h.x.low * h.x.low, h.x.high * h.x.high);
-  const double most = std::max(h.x.low * h.x.low, h.x.high * h.x.high);
-  h.y2 = {std::max(0.0, 1 - most), std::min(1.0, 1 - least)};
-  h.y = {std::sqrt(h.y2.low), std::sqrt(h.y2.high)};
+  const auto inverse_sine = [&](double q) { return 1 / std::sqrt(std::max(q * q + n2, 1e-300)); };
+  const double low = inverse_sine(p.low), high = inverse_sine(p.high);
+  h.x = {p.low * low - slack, p.high * high + slack};
+  h.y = {std::max(0.0, n * std::min(low, high) - slack), p.low * p.high <= 0 ? 1 : std::min(1.0, n * std::max(low, high) + slack)};
   return h;
 }
 
@@ -80,41 +88,49 @@ EdgeBend ErrorBound::edge(const Direction& a, const Direction& b, double wa, dou
   const Vec3 d = b.eye - a.eye, normal = glm::cross(a.eye, b.eye);
   const double dd = glm::dot(d, d), area2 = glm::dot(normal, normal), area = std::sqrt(area2);
   const double pa = glm::dot(a.eye, d), pb = glm::dot(b.eye, d);
-  const double a2 = a.rho * a.rho, b2 = b.rho * b.rho;
   if (!(area > 1e-13 * a.rho * b.rho)) return {}; // one direction: nothing to interpolate
+  const double inverse_a = 1 / a.rho, inverse_b = 1 / b.rho, inverse_area = 1 / area;
 
-  const Heading h = heading(a, b, pa, pb, -d.z, normal.z, area);
+  const auto turned = [&](const Direction& p, double along, double inverse) { return (p.rho * d.z - p.eye.z * along * inverse) * inverse_area; };
+  const Heading h = heading(a, b, turned(a, pa, inverse_a), turned(b, pb, inverse_b), std::min(1.0, std::abs(normal.z) * inverse_area));
   const RadialRange r = ranges_.over(h.u_low, h.u_high);
 
-  const double near2 = pa < 0 && pb > 0 ? area2 / dd : std::min(a2, b2), far2 = std::max(a2, b2);
-  const Range kappa{area / far2, area / near2};
+  // 1 / rho is greatest at the foot of the perpendicular from the eye, where that is on the edge.
+  const bool has_foot = pa < 0 && pb > 0;
+  const double near = has_foot ? std::sqrt(dd) * inverse_area : std::max(inverse_a, inverse_b), far = std::min(inverse_a, inverse_b);
+  const Range kappa{area * far * far, area * near * near};
   // c and W / rho have one stationary point each, c where W / rho has its own or where `turn` changes sign.
-  const double dw = wb - wa, at_foot = wa - dw * pa / dd;
-  const double ca = dw - wa * pa / a2, cb = dw - wb * pb / b2;
-  Range c = between(ca, cb), speed = between(wa / a.rho, wb / b.rho);
-  const auto turn = [&](double p) { return at_foot * (p * p - area2) - 2 * dw * (area2 / dd) * p; };
-  const double turn_a = turn(pa), turn_b = turn(pb), reach = std::sqrt(dw * dw + at_foot * at_foot * (dd * dd / area2));
-  if (turn_a > 0 && turn_b < 0) c.high = std::max(c.high, 0.5 * (dw + reach));
-  if (turn_a < 0 && turn_b > 0) c.low = std::min(c.low, 0.5 * (dw - reach));
-  if (ca * cb < 0) speed.high = std::max(speed.high, reach / std::sqrt(dd));
-  const Range turning{area2 / (far2 * std::sqrt(far2)) * speed.low, area2 / (near2 * std::sqrt(near2)) * speed.high}; // kappa^2 W
+  const double dw = wb - wa;
+  const double ca = dw - wa * pa * inverse_a * inverse_a, cb = dw - wb * pb * inverse_b * inverse_b;
+  Range c = between(ca, cb), speed = between(wa * inverse_a, wb * inverse_b);
+  const double at_foot = wa * dd - dw * pa; // times dd, and so is `turn`
+  const auto turn = [&](double p) { return at_foot * (p * p - area2) - 2 * dw * area2 * p; };
+  const double turn_a = turn(pa), turn_b = turn(pb);
+  const bool rises = c.low < 0 && c.high > 0;
+  if (rises || (turn_a > 0) != (turn_b > 0)) {
+    const double reach = norm(dw, at_foot * inverse_area);
+    if (turn_a > 0 && turn_b < 0) c.high = std::max(c.high, 0.5 * (dw + reach));
+    if (turn_a < 0 && turn_b > 0) c.low = std::min(c.low, 0.5 * (dw - reach));
+    if (rises) speed.high = std::max(speed.high, reach / std::sqrt(dd));
+  }
+  const Range turning{area2 * (far * far * far) * speed.low, area2 * (near * near * near) * speed.high}; // kappa^2 W
 
-  const Range change = 2.0 * (kappa * c);
-  const Range radial = turning * blend(r.along, r.across, h.y2) + change * (r.slope * h.x);
-  const Range sideways = h.y * (2.0 * (turning * (r.twist * h.x)) + change * r.factor);
+  const Range change = scaled({2 * kappa.low, 2 * kappa.high}, c), y2{h.y.low * h.y.low, h.y.high * h.y.high};
+  const Range radial = scaled(turning, blend(r.along, r.across, y2)) + change * (r.slope * h.x);
+  const Range sideways = scaled(h.y, scaled({2 * turning.low, 2 * turning.high}, r.twist * h.x) + change * r.factor);
   EdgeBend bend;
   const double kink = r.slope_jump > 0 ? 2 * kappa.high * std::max(wa, wb) * r.slope_jump : 0;
-  bend.second = (std::sqrt(magnitude(radial) * magnitude(radial) + magnitude(sideways) * magnitude(sideways)) + kink) * (1 + slack);
+  bend.second = (norm(magnitude(radial), magnitude(sideways)) + kink) * (1 + slack);
   if (!(bend.second < infinity)) bend.second = infinity;
 
   // Seen along the chord of the unit directions, |chord| >= cos(psi/2), the interpolated distance is 1 / |chord| times the
   // exact one, and the interpolated g differs from the exact one by at most a quarter of the range of its slope.
-  const double cosine = glm::dot(a.eye, b.eye) / (a.rho * b.rho), secant2 = 2 / (1 + cosine);
+  const double apart = inverse_a * inverse_b, secant2 = 2 / (1 + glm::dot(a.eye, b.eye) * apart);
   bend.depth = std::sqrt(secant2) - 1;
   if (projection_ == Projection::perspective) {
-    const Range rate = area / (a.rho * b.rho) * (Range{1, secant2} * (r.weight_slope * h.x));
-    const double g_error = 0.25 * (rate.high - rate.low) + r.weight_jump;
-    bend.depth += (1 + bend.depth) * g_error / r.weight.low;
+    const Range along = r.weight_slope * h.x;
+    const double rate = area * apart * (std::max(along.high, secant2 * along.high) - std::min(along.low, secant2 * along.low));
+    bend.depth += (1 + bend.depth) * (0.25 * rate + r.weight_jump) / r.weight.low;
   }
   return bend;
 }

@@ -66,7 +66,8 @@ std::size_t split_edges(LevelState& state, std::size_t first) {
     for (std::size_t e = begin; e < std::min(end, begin + level_block); ++e) {
       if (!is_used[e - first]) continue;
       RefinedEdge& edge = mesh.edges[e];
-      const EdgeDecision decision = state.oracle.decide(mesh.points[edge.a], mesh.points[edge.b]);
+      const EdgeBend known{edge.second, edge.depth_error};
+      const EdgeDecision decision = state.oracle.decide(mesh.points[edge.a], mesh.points[edge.b], known.second >= 0 ? &known : nullptr);
       note(decision, edge);
       evaluations[i] += decision.evaluations;
       if (decision.split) splits[i].emplace_back(static_cast<std::uint32_t>(e), decision.split->point);

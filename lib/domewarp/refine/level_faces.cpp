@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/rounding.h"
 #include "domewarp/refine/level_state.h"
 #include "domewarp/refine/pattern_choice.h"
 
@@ -19,10 +20,16 @@ constexpr int first_depth = 2;     ///< a face is judged in 16 parts, and more f
 constexpr int most_insertions = 4; ///< faces that their bound never proves good (long slivers beside the eye) would go on for ever
 constexpr std::uint32_t local_bit = 0x80000000; ///< marks ids that count from the start of a block's own results
 
+/// A new edge inside a face: the ids of its ends, its bounds where known.
+struct InnerEdge {
+  std::uint32_t p, q;
+  float second = -1, depth = 0; ///< see RefinedEdge::second
+};
+
 /// What one block of faces turns into.
 struct FaceBlock {
   std::vector<RefinedFace> active, final;
-  std::vector<std::array<std::uint32_t, 2>> edges; ///< point ids of new inner edges
+  std::vector<InnerEdge> edges;
   std::vector<MappedPoint> points;                 ///< inserted inside faces
   std::vector<Wedge> wedges;
   std::size_t clipped = 0, off_picture = 0, uncertified = 0;
@@ -56,9 +63,16 @@ public:
     }
     std::array<const MappedPoint*, 6> mapped{};
     for (std::size_t i = 0; i < 6; ++i) mapped[i] = point[i] == RefinedEdge::none ? nullptr : &mesh_.points[point[i]];
-    const SplitPattern& pattern = choose_pattern(marks, mapped, oracle_);
+    const auto [pattern, bend] = choose_pattern(marks, mapped, oracle_);
     const std::uint32_t first_edge = static_cast<std::uint32_t>(block_.edges.size());
-    for (int i = 0; i < pattern.edges; ++i) block_.edges.push_back({point[pattern.edge[i][0]], point[pattern.edge[i][1]]});
+    for (int i = 0; i < pattern.edges; ++i) {
+      InnerEdge edge{point[pattern.edge[i][0]], point[pattern.edge[i][1]]};
+      if (bend[i]) {
+        edge.second = rounded_up(bend[i]->second);
+        edge.depth = rounded_up(bend[i]->depth);
+      }
+      block_.edges.push_back(edge);
+    }
     for (int i = 0; i < pattern.faces; ++i) {
       RefinedFace part;
       part.source = face.source;
@@ -183,8 +197,12 @@ void place(LevelState& state, const FaceBlock& block, const Places& at) {
     mesh.wedges[at.wedges + i] = block.wedges[i];
     mesh.wedges[at.wedges + i].point = globalise(block.wedges[i].point, at.points);
   }
-  for (std::size_t i = 0; i < block.edges.size(); ++i)
-    mesh.edges[at.edges + i] = edge_of(mesh.points, globalise(block.edges[i][0], at.points), globalise(block.edges[i][1], at.points), RefinedEdge::none);
+  for (std::size_t i = 0; i < block.edges.size(); ++i) {
+    const InnerEdge& inner = block.edges[i];
+    RefinedEdge& edge = mesh.edges[at.edges + i] = edge_of(mesh.points, globalise(inner.p, at.points), globalise(inner.q, at.points), RefinedEdge::none);
+    edge.second = inner.second;
+    edge.depth_error = inner.depth;
+  }
   for (std::size_t i = 0; i < block.active.size(); ++i) {
     RefinedFace face = block.active[i];
     for (int k = 0; k < 3; ++k) {

@@ -19,7 +19,7 @@ void finish_early(LevelState& state, std::size_t first_undecided) {
   RefinedMesh& mesh = state.mesh;
   for (std::size_t e = first_undecided; e < mesh.edges.size(); ++e) {
     RefinedEdge& edge = mesh.edges[e];
-    edge.error = static_cast<float>(state.oracle.diagonal_error(mesh.points[edge.a], mesh.points[edge.b]));
+    edge.error = static_cast<float>(state.oracle.diagonal(mesh.points[edge.a], mesh.points[edge.b]).error);
   }
   for (const RefinedFace& face : state.active)
     if (hiding_boundary(state, face) < 0) mesh.faces.push_back(face);

@@ -12,16 +12,41 @@ namespace {
 
 using Points = std::array<const MappedPoint*, 6>;
 
-double cost(const SplitPattern& pattern, const Points& points, const EdgeOracle& oracle) {
-  std::array<double, 3> errors{};
-  for (int i = 0; i < pattern.edges; ++i) {
-    const MappedPoint *p = points[pattern.edge[i][0]], *q = points[pattern.edge[i][1]];
-    if (precedes(q->eye, p->eye)) std::swap(p, q);
-    errors[i] = oracle.diagonal_error(*p, *q);
+/// The edges between a face's corners and split points; each is judged once, whatever patterns have it.
+class Diagonals {
+public:
+  Diagonals(const Points& points, const EdgeOracle& oracle) : points_(points), oracle_(oracle) {}
+
+  /// Sum of the error bounds of the pattern's inner edges.
+  double cost(const SplitPattern& pattern) {
+    std::array<double, 3> errors{};
+    for (int i = 0; i < pattern.edges; ++i) errors[i] = find(pattern.edge[i]).error;
+    std::sort(errors.begin(), errors.end()); // a sum of three must not depend on their order
+    return errors[0] + errors[1] + errors[2];
   }
-  std::sort(errors.begin(), errors.end()); // a sum of three must not depend on their order
-  return errors[0] + errors[1] + errors[2];
-}
+
+  std::array<std::optional<EdgeBend>, 3> bends(const SplitPattern& pattern) {
+    std::array<std::optional<EdgeBend>, 3> all;
+    for (int i = 0; i < pattern.edges; ++i) all[i] = find(pattern.edge[i]).bend;
+    return all;
+  }
+
+private:
+  const DiagonalBound& find(const std::array<std::uint8_t, 2>& ends) {
+    const unsigned low = std::min(ends[0], ends[1]), high = std::max(ends[0], ends[1]), bit = 1u << (6 * low + high);
+    DiagonalBound& bound = bound_[low][high];
+    if (known_ & bit) return bound;
+    known_ |= bit;
+    const MappedPoint *p = points_[low], *q = points_[high];
+    if (precedes(q->eye, p->eye)) std::swap(p, q);
+    return bound = oracle_.diagonal(*p, *q);
+  }
+
+  const Points& points_;
+  const EdgeOracle& oracle_;
+  std::array<std::array<DiagonalBound, 6>, 5> bound_; ///< by the lower and the higher end, where known_
+  unsigned known_ = 0;
+};
 
 /// Compares the edge that tells two patterns of equal cost apart, by its lowest end, then its highest.
 bool is_before(const SplitPattern& x, const SplitPattern& y, const Points& points) {
@@ -38,19 +63,20 @@ bool is_before(const SplitPattern& x, const SplitPattern& y, const Points& point
 
 } // namespace
 
-const SplitPattern& choose_pattern(unsigned marks, const Points& points, const EdgeOracle& oracle) {
+ChosenPattern choose_pattern(unsigned marks, const Points& points, const EdgeOracle& oracle) {
   const PatternChoice& choice = patterns_for(marks);
-  if (choice.count == 1) return choice.pattern[0];
+  if (choice.count == 1) return {choice.pattern[0], {}};
+  Diagonals diagonals(points, oracle);
   int best = 0;
-  double best_cost = cost(choice.pattern[0], points, oracle);
+  double best_cost = diagonals.cost(choice.pattern[0]);
   for (int i = 1; i < choice.count; ++i) {
-    const double c = cost(choice.pattern[i], points, oracle);
+    const double c = diagonals.cost(choice.pattern[i]);
     if (c < best_cost || (c == best_cost && is_before(choice.pattern[i], choice.pattern[best], points))) {
       best = i;
       best_cost = c;
     }
   }
-  return choice.pattern[best];
+  return {choice.pattern[best], diagonals.bends(choice.pattern[best])};
 }
 
 } // namespace domewarp

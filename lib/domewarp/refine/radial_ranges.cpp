@@ -27,6 +27,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double right_angle = std::numbers::pi / 2;
+constexpr double near_pole = 0.8; ///< half-angle index, 152 degrees
 
 double angle_at(double u) { return 2 * std::atan2(u, 1 - u); }
 double index_of(double theta) { return half_angle_index(std::sin(theta), std::cos(theta), 1); }
@@ -152,14 +153,14 @@ Quotients before_right_angle(const Smooth& cell, const Quotients& start, double 
   return q;
 }
 
-/// The same beyond it, where cos^2(theta / 2) / sin^2(theta) = 1 / (4 sin^2(theta / 2)) takes the pole away.
-Quotients beyond_right_angle(const Smooth& cell, const Quotients& start, double low, double high) {
+/// The same beyond it. Scaled, cos^2(theta / 2) / sin^2(theta) = 1 / (4 sin^2(theta / 2)) takes the pole away.
+Quotients beyond_right_angle(const Smooth& cell, const Quotients& start, double low, double high, bool is_scaled) {
   const Interval angle(low, high), step(0, high - low), s = sin(angle), s02 = power(sin(Interval(low)), 2);
-  const Interval jump(-cell.jump, cell.jump), half = sin(Interval(0.5 * low, 0.5 * high)), bottom = Interval(4) * power(half, 2);
+  const Interval jump(-cell.jump, cell.jump), divisor = is_scaled ? Interval(2) * sin(Interval(0.5 * low, 0.5 * high)) : s, bottom = power(divisor, 2);
   Quotients q;
   q.across = (start.across * s02 + step * (cell.d2r * s * cos(angle) - Interval(2) * cell.dr * power(s, 2)) + jump * s) / bottom;
   q.twist = (start.twist * s02 + step * ((cell.d2r + cell.r) * s) + jump * s) / bottom;
-  q.factor = cell.r / (Interval(2) * half);
+  q.factor = cell.r / divisor;
   return q;
 }
 
@@ -200,15 +201,15 @@ struct Cell {
   double slope_jump = 0, weight_jump = 0;
 };
 
-Cell make_cell(const ContinuedRadius& radius, double mean, double low, double high) {
+Cell make_cell(const ContinuedRadius& radius, double mean, double low, double high, bool is_scaled) {
   const Smooth smooth = CellEncloser(radius).enclose(low, high);
   Quotients start;
   if (low > 0)
     start = quotients_at(radius, low);
   else
     start.factor = radius.enclose(0, 0).dr;
-  const Quotients q = high <= right_angle ? scaled(before_right_angle(smooth, start, low, high), low, high)
-                                          : beyond_right_angle(smooth, start, low, high);
+  Quotients q = high <= right_angle ? before_right_angle(smooth, start, low, high) : beyond_right_angle(smooth, start, low, high, is_scaled);
+  if (is_scaled && high <= right_angle) q = scaled(q, low, high);
   const Weights w = weights_of(smooth, mean);
   return {smooth.d2r, q.across, q.twist, smooth.dr, q.factor, w.g, w.slope, smooth.jump, w.jump};
 }
@@ -221,6 +222,7 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
   u_low_ = theta_low == 0 ? 0 : index_of(theta_low);
   const double u_high = theta_high >= std::numbers::pi ? 1 : index_of(theta_high);
   scale_ = inner_cells / (u_high - u_low_);
+  is_scaled_ = u_high + margin / scale_ > near_pole;
   const double mean = mean_slope(surface, branch);
   const ContinuedRadius radius(surface, branch);
   const Branch& range = surface.branches()[branch];
@@ -238,7 +240,7 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     const double last = std::min(std::numbers::pi, start_of(i + 1) + (i + 1 == margin + inner_cells ? 0 : rounding));
     const bool is_outermost = (i == 0 && first > 0) || (i + 1 == cells && last < std::numbers::pi);
     const bool has_pole = i < margin && first <= 0; // K = R / sin(theta), and R is not 0 there
-    Cell cell = is_outermost || has_pole ? unknown : make_cell(radius, mean, first, last);
+    Cell cell = is_outermost || has_pole ? unknown : make_cell(radius, mean, first, last, is_scaled_);
     for (const bool is_high : {false, true}) {
       const double end = is_high ? range.theta_high : range.theta_low;
       if (is_high ? last <= end : first >= end) continue;
@@ -248,8 +250,8 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     }
     const std::array<Interval, quantities> all{cell.along, cell.across, cell.twist, cell.slope, cell.factor, cell.weight, cell.weight_slope};
     for (int k = 0; k < quantities; ++k) {
-      base[i][2 * k] = rounded_up(-all[k].lo);
-      base[i][2 * k + 1] = rounded_up(all[k].hi);
+      base[i].bound[k] = rounded_up(-all[k].lo);
+      base[i].bound[half + k] = rounded_up(all[k].hi);
     }
     slope_jumps_[i + 1] = cell.slope_jump;
     weight_jumps_[i + 1] = cell.weight_jump;
@@ -258,12 +260,13 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     slope_jumps_[i + 1] += slope_jumps_[i];
     weight_jumps_[i + 1] += weight_jumps_[i];
   }
+  has_jumps_ = slope_jumps_.back() > 0 || weight_jumps_.back() > 0;
   levels_.push_back(std::move(base));
   for (std::size_t span = 2; span <= cells; span *= 2) {
     const std::vector<Row>& finer = levels_.back();
     std::vector<Row> level(cells - span + 1);
     for (std::size_t i = 0; i < level.size(); ++i)
-      for (std::size_t k = 0; k < level[i].size(); ++k) level[i][k] = std::max(finer[i][k], finer[i + span / 2][k]);
+      for (std::size_t k = 0; k < 2 * half; ++k) level[i].bound[k] = std::max(finer[i].bound[k], finer[i + span / 2].bound[k]);
     levels_.push_back(std::move(level));
   }
 }
@@ -272,19 +275,28 @@ RadialRange RadialRanges::over(double u_low, double u_high) const {
   const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp(margin + (u - u_low_) * scale_, 0.0, cells - 1.0)); };
   const std::size_t first = cell(u_low), last = std::max(first, cell(u_high)); // rounding may have swapped them
   const std::size_t level = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
-  const Row& left = levels_[level][first];
-  const Row& right = levels_[level][last + 1 - (std::size_t{1} << level)];
-  const auto range = [&](std::size_t k) -> Range {
-    return {-static_cast<double>(std::max(left[2 * k], right[2 * k])), static_cast<double>(std::max(left[2 * k + 1], right[2 * k + 1]))};
-  };
-  const auto jump = [&](const std::vector<double>& sums) { return sums[last + 1] - sums[first]; };
-  // cos^2(theta / 2) falls with u.
-  const auto half2 = [](double u) { return (1 - u) * (1 - u) / ((1 - u) * (1 - u) + u * u); };
-  const Range square{1 / half2(u_low), 1 / half2(u_high)}, root{std::sqrt(square.low), std::sqrt(square.high)};
-  const auto scaled = [](const Range& a, const Range& by) -> Range {
-    return {a.low * (a.low < 0 ? by.high : by.low), a.high * (a.high > 0 ? by.high : by.low)};
-  };
-  return {range(0), scaled(range(1), square), scaled(range(2), square), range(3), scaled(range(4), root), range(5), range(6), jump(slope_jumps_), jump(weight_jumps_)};
+  const std::vector<Row>& rows = levels_[level];
+  const Row &left = rows[first], &right = rows[last + 1 - (std::size_t{1} << level)];
+  Row all;
+  for (std::size_t k = 0; k < 2 * half; ++k) all.bound[k] = std::max(left.bound[k], right.bound[k]);
+  const auto range = [&](std::size_t k) -> Range { return {-static_cast<double>(all.bound[k]), static_cast<double>(all.bound[half + k])}; };
+  RadialRange r{range(0), range(1), range(2), range(3), range(4), range(5), range(6)};
+  if (is_scaled_) {
+    // cos^2(theta / 2) falls with u.
+    const auto secant2 = [](double u) { return ((1 - u) * (1 - u) + u * u) / ((1 - u) * (1 - u)); };
+    const Range square{secant2(u_low), secant2(u_high)}, root{std::sqrt(square.low), std::sqrt(square.high)};
+    const auto unscaled = [](const Range& a, const Range& by) -> Range {
+      return {a.low * (a.low < 0 ? by.high : by.low), a.high * (a.high > 0 ? by.high : by.low)};
+    };
+    r.across = unscaled(r.across, square);
+    r.twist = unscaled(r.twist, square);
+    r.factor = unscaled(r.factor, root);
+  }
+  if (has_jumps_) {
+    r.slope_jump = slope_jumps_[last + 1] - slope_jumps_[first];
+    r.weight_jump = weight_jumps_[last + 1] - weight_jumps_[first];
+  }
+  return r;
 }
 
 } // namespace domewarp

@@ -39,12 +39,17 @@ public:
 
 private:
   static constexpr std::size_t inner_cells = 1024, margin = 64, cells = inner_cells + 2 * margin;
-  static constexpr int quantities = 7;
-  /// Bounds rounded outwards; -low, so that both halves are maxima. B, C and K grow without bound towards the backward
-  /// axis: they are kept times cos^2(theta / 2), cos^2(theta / 2) and cos(theta / 2).
-  using Row = std::array<float, 2 * quantities>;
+  static constexpr int quantities = 7, half = 8;
+  /// Bounds rounded outwards, -low first, then high from `half` on, so that all are maxima; the rest is 0.
+  struct alignas(64) Row {
+    std::array<float, 2 * half> bound{};
+  };
 
   double u_low_ = 0, scale_ = 0; ///< where the first inner cell begins, cells per unit
+  /// B, C and K grow without bound towards the backward axis: where cells come near it, all are kept times
+  /// cos^2(theta / 2), cos^2(theta / 2) and cos(theta / 2).
+  bool is_scaled_ = false;
+  bool has_jumps_ = false;
   std::vector<std::vector<Row>> levels_; ///< sparse table: levels_[k][i] covers cells i .. i + 2^k - 1
   std::vector<double> slope_jumps_, weight_jumps_; ///< running sums, cells + 1
 };

@@ -20,6 +20,7 @@ struct RefinedEdge {
   std::uint32_t child = 0;       ///< its halves: child (with a) and child + 1 (with b)
   std::uint32_t source = none;   ///< the source edge it is part of (into source_edges), none inside a source face
   float error = 0, depth_error = 0;
+  float second = -1;             ///< until it is decided: EdgeBend::second with the other in depth_error, where known
   float middle_error = -1;       ///< see EdgeDecision
   float arch = 0;                ///< see EdgeDecision
   bool certified = true;         ///< see EdgeDecision

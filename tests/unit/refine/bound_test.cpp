@@ -50,7 +50,7 @@ TEST(ErrorBound, CoversTheSampledErrorOfRandomEdges) {
         for (const std::int8_t side : oracle.locate(point_at(a.eye, b.eye, s / 32.0)).sides) inside = inside && side > 0;
       if (!inside) continue;
       ++tested;
-      const double bound = oracle.diagonal_error(a, b);
+      const double bound = oracle.diagonal(a, b).error;
       for (int s = 1; s < 32; ++s) violations += true_error(oracle, a, b, s / 32.0) > bound * (1 + 1e-9) + 1e-12;
     }
     EXPECT_GT(tested, 1000) << name(c);
@@ -239,7 +239,7 @@ TEST(ErrorBound, IsNoTriviallyLargeNumber) {
   const ImageMap map = make_image_map(surface, Method::automatic);
   const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1e-4, 1e-4, 1, Projection::orthographic});
   const MappedPoint a = oracle.locate({0.5, 0.3, -1}), b = oracle.locate({0.55, 0.35, -1});
-  EXPECT_LT(oracle.diagonal_error(a, b), 3 * true_error(oracle, a, b, 0.5));
+  EXPECT_LT(oracle.diagonal(a, b).error, 3 * true_error(oracle, a, b, 0.5));
 }
 
 TEST(EdgeOracle, SplitsTheEdgeWhoseMidpointErrorVanishes) {
