@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/rounding.h"
+#include "domewarp/transform/radial_table.h"
 
 namespace domewarp {
 
@@ -38,6 +39,16 @@ EdgeOracle::EdgeOracle(const Surface& surface, std::size_t branch, const BranchM
                        const OracleOptions& options)
     : map_(map), region_(std::move(region)), options_(options), bound_(surface, branch, map.branch().theta_low, highest_angle(map.branch()), options.projection),
       rim_angle_(unnoticed_angle(map, options.tolerance)), low_slope_(map.end_slope(false)), high_slope_(map.end_slope(true)) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  u_low_ = -infinity;
+  u_high_ = infinity;
+  nearest_ = 0;
+  for (const Boundary& boundary : region_.boundaries) {
+    const double u = half_angle_index(boundary.sine, boundary.cosine, 1);
+    if (boundary.kind == Boundary::Kind::low_cone) u_low_ = u;
+    if (boundary.kind == Boundary::Kind::high_cone) u_high_ = u;
+    if (boundary.kind == Boundary::Kind::near_sphere) nearest_ = boundary.radius;
+  }
   if (options.criterion) most_asked_ = static_cast<int>(std::clamp(std::ceil(std::log2(widest_asked / options.criterion_length)), 0.0, 255.0));
 }
 
@@ -50,6 +61,15 @@ EdgeOracle EdgeOracle::relaxed(double factor) const {
   oracle.options_.criterion_length *= factor;
   oracle.rim_angle_ *= factor;
   return oracle;
+}
+
+// With L the longest side, every point is within the angle L / (nearest - L) of a corner, and within u_margin of that in u; for
+// this to stay within `room`, L (0.51 + room) < room * nearest. Sides of such figures take up less than 45 degrees.
+bool EdgeOracle::is_well_inside(double longest2, double u_low, double u_high, double nearest) const {
+  const double room = std::min({1.0, u_high_ - u_high, u_low - u_low_}), least = nearest - nearest_;
+  if (!(room > 0 && least > 0)) return false;
+  const double reach = room * nearest, share = u_margin(1) + room;
+  return share * share * longest2 < reach * reach && longest2 < least * least;
 }
 
 Mapped EdgeOracle::map_point(const Vec3& eye) const {
@@ -133,30 +153,33 @@ bool EdgeOracle::is_sagging_chord(const MappedPoint& a, const MappedPoint& b) co
 }
 
 EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const {
+  const Vec3 d = b.eye - a.eye;
+  const double length2 = glm::dot(d, d), nearest = std::min(a.rho, b.rho);
+  const bool is_tiny = length2 <= smallest_angle * smallest_angle * nearest * nearest;
+  if (is_well_inside(length2, a, b)) return is_tiny ? EdgeDecision{} : split_by_criterion(split_by_error(a, b, known), a, b);
   EdgeDecision decision;
   bool outside = false;
   decision.split = split_at_boundary(a, b, outside);
   if (outside || decision.split) return decision;
   if (std::min(*std::min_element(a.sides.begin(), a.sides.end()), *std::min_element(b.sides.begin(), b.sides.end())) < 0)
     return decision; // crosses within rounding of one end
-  const double rho_a = glm::length(a.eye), rho_b = glm::length(b.eye);
-  const double cosine = glm::dot(a.eye, b.eye) / (rho_a * rho_b);
-  if (cosine < 0.5) {
-    const Vec3 bisector = (a.eye * rho_b + b.eye * rho_a) / (rho_a + rho_b);
-    decision.split = Split{rho_a / (rho_a + rho_b), locate(bisector)};
+  if (glm::dot(a.eye, b.eye) < 0.5 * a.rho * b.rho) {
+    const Vec3 bisector = (a.eye * b.rho + b.eye * a.rho) / (a.rho + b.rho);
+    decision.split = Split{a.rho / (a.rho + b.rho), locate(bisector)};
     return decision;
   }
   if (is_sagging_chord(a, b)) {
     decision.split = Split{0.5, locate(point_at(a.eye, b.eye, 0.5))};
     return decision;
   }
-  if (glm::length(b.eye - a.eye) <= smallest_angle * std::min(rho_a, rho_b)) return decision;
+  if (is_tiny) return decision;
   return split_by_criterion(split_by_error(a, b, known), a, b);
 }
 
 // A jump along the side of a sliver can ask for ever for vertices ever nearer to that side. Halving ends sooner, so
 // points remember how many of these splits led to them.
 EdgeDecision EdgeOracle::split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const {
+  if (!decision.split && most_asked_ == 0) return decision;
   const std::uint8_t asked = std::max(a.asked, b.asked);
   const auto is_asked = [&] {
     return asked < most_asked_ && glm::length(b.mapped.image - a.mapped.image) > options_.criterion_length && options_.criterion(a, b);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -87,6 +88,13 @@ public:
   /// @param known what diagonal() found out about the edge, or null
   EdgeDecision decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known = nullptr) const;
 
+  /// Whether a figure is so small and so well inside what the branch shows that no boundary can meet it.
+  template <typename... Points>
+  bool is_well_inside(double longest2, const Points&... corner) const {
+    const double low = std::min({corner.u...}), high = std::max({corner.u...}), nearest = std::min({corner.rho...});
+    return (... && (corner.sides == Sides{1, 1, 1})) && is_well_inside(longest2, low, high, nearest);
+  }
+
   /// Sides and image of a point. `on`: index of a boundary it is known to lie on, or -1.
   MappedPoint locate(const Vec3& eye, int on = -1) const;
 
@@ -127,10 +135,11 @@ private:
     double second, error, depth;
   };
 
+  bool is_well_inside(double longest2, double u_low, double u_high, double nearest) const;
   Mapped map_point(const Vec3& eye) const;
   std::optional<Split> split_at_boundary(const MappedPoint& a, const MappedPoint& b, bool& outside) const;
   bool is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const;
-  bool is_good_in_parts(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, int depth, std::size_t& evaluations) const;
+  bool are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const Vec3& seconds, int depth, std::size_t& evaluations) const;
   bool is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const;
   double image_extent(const MappedPoint& a, const MappedPoint& b, const Vec2& middle) const;
   DrawnPoint drawn(const MappedPoint& p) const;
@@ -146,6 +155,7 @@ private:
   VisibleRegion region_;
   OracleOptions options_;
   ErrorBound bound_;
+  double u_low_, u_high_, nearest_; ///< the boundaries, infinite where there is none
   int most_asked_ = 0;      ///< the criterion is not asked about ends that took so many of its splits
   double rim_angle_;        ///< how far (radians) an edge may dip across a cone unnoticed
   double low_slope_, high_slope_; ///< |R'| at the ends of the branch, 0 at a fold

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -27,7 +26,7 @@ Range operator*(const Range& a, const Range& b) {
   return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
 }
 
-Range operator*(double f, const Range& a) { return f >= 0 ? Range{f * a.low, f * a.high} : Range{f * a.high, f * a.low}; }
+Range operator*(double f, const Range& a) { return {std::min(f * a.low, f * a.high), std::max(f * a.low, f * a.high)}; }
 
 Range between(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -137,6 +136,23 @@ EdgeBend ErrorBound::edge(const Direction& a, const Direction& b, double wa, dou
 
 namespace {
 
+/// The corners of a face as directions.
+struct FaceDirections {
+  std::array<Vec3, 3> unit;
+  std::array<double, 3> inverse_rho;
+  Vec3 cosine; ///< of the angles of its sides
+};
+
+FaceDirections face_directions(const std::array<const Direction*, 3>& corner) {
+  FaceDirections face;
+  for (int k = 0; k < 3; ++k) {
+    face.inverse_rho[k] = 1 / corner[k]->rho;
+    face.unit[k] = corner[k]->eye * face.inverse_rho[k];
+  }
+  for (int k = 0; k < 3; ++k) face.cosine[k] = glm::dot(face.unit[k], face.unit[(k + 1) % 3]);
+  return face;
+}
+
 /// Azimuths over a face against its centroid's, theta, and what follows from them for the components of a vector.
 struct FaceFrame {
   double cos_centre = 1, sin_centre = 0;
@@ -144,47 +160,46 @@ struct FaceFrame {
   double u_low = 0, u_high = 1;
 };
 
-/// The theta range of an edge beyond its ends.
-void include_extreme(const Direction& a, const Direction& b, FaceFrame& frame) {
-  const Vec3 d = b.eye - a.eye;
-  const double at_a = a.rho * a.rho * d.z - a.eye.z * glm::dot(a.eye, d), at_b = b.rho * b.rho * d.z - b.eye.z * glm::dot(b.eye, d);
-  if (at_a * at_b >= 0) return;
-  const Vec3 normal = glm::cross(a.eye, b.eye);
-  const double side = std::hypot(normal.x, normal.y), n = std::abs(normal.z), area = glm::length(normal);
-  (at_a < 0 ? frame.u_low : frame.u_high) = half_angle_index(n, at_a < 0 ? side : -side, area);
+/// The theta range of a side beyond its ends.
+void include_extreme(const Vec3& a, const Vec3& b, double cosine, FaceFrame& frame) {
+  const double at_a = b.z - a.z * cosine, at_b = a.z - b.z * cosine; // of the same sign where z is extreme between them
+  if (!(at_a * at_b > 0)) return;
+  const Vec3 normal = glm::cross(a, b);
+  const double side2 = normal.x * normal.x + normal.y * normal.y, side = std::sqrt(side2), area = std::sqrt(side2 + normal.z * normal.z);
+  const double u = half_angle_index(std::abs(normal.z), at_a < 0 ? side : -side, area);
+  (at_a < 0 ? frame.u_low : frame.u_high) = at_a < 0 ? std::min(frame.u_low, u) : std::max(frame.u_high, u);
 }
 
 double cosine_at(double u) { return (1 - 2 * u) / (1 - 2 * u + 2 * u * u); }
 double sine_at(double u) { return 2 * u * (1 - u) / (1 - 2 * u + 2 * u * u); }
 
-FaceFrame face_frame(const Direction& a, const Direction& b, const Direction& c) {
+FaceFrame face_frame(const std::array<const Direction*, 3>& corner, const FaceDirections& face) {
   FaceFrame frame;
-  const std::array<const Direction*, 3> corner{&a, &b, &c};
-  std::tie(frame.u_low, frame.u_high) = std::minmax({a.u, b.u, c.u});
-  std::array<double, 3> normal_z;
+  frame.u_low = std::min({corner[0]->u, corner[1]->u, corner[2]->u});
+  frame.u_high = std::max({corner[0]->u, corner[1]->u, corner[2]->u});
+  const std::array<Vec3, 3>& unit = face.unit;
+  Vec3 normal_z;
   for (int k = 0; k < 3; ++k) {
-    const Direction &p = *corner[k], &q = *corner[(k + 1) % 3];
-    const double low = frame.u_low, high = frame.u_high;
-    include_extreme(p, q, frame);
-    frame.u_low = std::min(low, frame.u_low);
-    frame.u_high = std::max(high, frame.u_high);
-    normal_z[k] = p.eye.x * q.eye.y - p.eye.y * q.eye.x;
+    const Vec3 &p = unit[k], &q = unit[(k + 1) % 3];
+    include_extreme(p, q, face.cosine[k], frame);
+    normal_z[k] = p.x * q.y - p.y * q.x;
   }
-  const auto [least, most] = std::minmax_element(normal_z.begin(), normal_z.end());
-  if (*least > 0 || *most < 0) { // an axis pierces the face; where it meets a side the side has told
-    (a.eye.z + b.eye.z + c.eye.z < 0 ? frame.u_low : frame.u_high) = a.eye.z + b.eye.z + c.eye.z < 0 ? 0 : 1;
-  } else if (const double x = a.eye.x / a.rho + b.eye.x / b.rho + c.eye.x / c.rho, y = a.eye.y / a.rho + b.eye.y / b.rho + c.eye.y / c.rho,
-             size = std::sqrt(x * x + y * y);
-             size > 0) {
-    frame.cos_centre = x / size;
-    frame.sin_centre = y / size;
+  const double least = std::min({normal_z.x, normal_z.y, normal_z.z}), most = std::max({normal_z.x, normal_z.y, normal_z.z});
+  const Vec3 sum = unit[0] + unit[1] + unit[2];
+  const double size2 = sum.x * sum.x + sum.y * sum.y;
+  if (least > 0 || most < 0) { // an axis pierces the face; where it meets a side the side has told
+    const double z = corner[0]->eye.z + corner[1]->eye.z + corner[2]->eye.z;
+    (z < 0 ? frame.u_low : frame.u_high) = z < 0 ? 0 : 1;
+  } else if (size2 > 0) {
+    const double inverse_size = 1 / std::sqrt(size2);
+    frame.cos_centre = sum.x * inverse_size;
+    frame.sin_centre = sum.y * inverse_size;
     Range cosines{1, 1}, sines{1, -1};
-    for (const Direction* p : corner) {
-      const double r = std::sqrt(p->eye.x * p->eye.x + p->eye.y * p->eye.y);
-      const double along = (p->eye.x * frame.cos_centre + p->eye.y * frame.sin_centre) / r;
-      const double across = (p->eye.y * frame.cos_centre - p->eye.x * frame.sin_centre) / r;
-      cosines.low = r > 0 ? std::min(cosines.low, along) : -1; // a corner on the axis has every azimuth
-      if (!(cosines.low > 0)) break;
+    for (const Vec3& p : unit) {
+      const double r2 = p.x * p.x + p.y * p.y, inverse_r = 1 / std::sqrt(r2);
+      const double along = (p.x * frame.cos_centre + p.y * frame.sin_centre) * inverse_r;
+      const double across = (p.y * frame.cos_centre - p.x * frame.sin_centre) * inverse_r;
+      cosines.low = r2 > 0 ? std::min(cosines.low, along) : -1; // a corner on the axis has every azimuth
       sines = {std::min(sines.low, across), std::max(sines.high, across)};
     }
     if (cosines.low > 0) {
@@ -204,36 +219,62 @@ Range square(const Range& a) {
   return {a.low <= 0 && a.high >= 0 ? 0 : std::min(p, q), std::max(p, q)};
 }
 
-} // namespace
+/// Components of a vector v over a face: v . e_theta (forward is -z), v . e_phi, v . e_rho.
+struct Components {
+  Range along_meridian, across, away;
+};
 
-double ErrorBound::face(const Direction& a, const Direction& b, const Direction& c, const Vec3& weights, const Vec3& v, double dw) const {
-  const FaceFrame frame = face_frame(a, b, c);
-  const RadialRange r = ranges_.over(frame.u_low, frame.u_high);
+Components components_of(const Vec3& v, const FaceFrame& frame) {
   const double x = v.x * frame.cos_centre + v.y * frame.sin_centre, y = v.y * frame.cos_centre - v.x * frame.sin_centre;
   const Range outwards = x * frame.cos_azimuth + y * frame.sin_azimuth;
-  const Range along_meridian = frame.cosine * outwards + v.z * frame.sine; // v . e_theta, forward is -z
-  const Range across = y * frame.cos_azimuth + (-x) * frame.sin_azimuth;   // v . e_phi
-  const Range away = frame.sine * outwards + (-v.z) * frame.cosine;        // v . e_rho
-
-  // Seen along the triangle of unit directions d_i, |sum m_i d_i|^2 = 1 - sum m_i m_j |d_i - d_j|^2 >= 1 - max / 3.
-  const auto gap2 = [](const Direction& p, const Direction& q) { const Vec3 g = p.eye / p.rho - q.eye / q.rho; return glm::dot(g, g); };
-  const double sag = std::sqrt(std::max(1e-6, 1 - std::max({gap2(a, b), gap2(b, c), gap2(c, a)}) / 3)) - slack;
-  const auto [near, far] = std::minmax({a.rho, b.rho, c.rho});
-  const Range inverse{1 / far, 1 / (near * sag)};
-  const auto [least, most] = std::minmax({weights[0] / a.rho, weights[1] / b.rho, weights[2] / c.rho});
-  const Range speed{least, most / sag}; // W / rho
-  const Range turn = Range{dw, dw} + -1.0 * (speed * away); // c of ErrorBound::edge
-  const Range scale = speed * inverse, change = 2.0 * (inverse * turn);
-  const Range radial = scale * (r.along * square(along_meridian) + r.across * square(across)) + change * (r.slope * along_meridian);
-  const Range sideways = 2.0 * (scale * (r.twist * (along_meridian * across))) + change * (r.factor * across);
-  const double kink = r.slope_jump > 0 ? 2 * magnitude(along_meridian) * magnitude(along_meridian) * scale.high * r.slope_jump : 0;
-  const double bound = std::sqrt(magnitude(radial) * magnitude(radial) + magnitude(sideways) * magnitude(sideways)) + kink;
-  return bound < infinity ? bound * (1 + slack) : infinity;
+  return {frame.cosine * outwards + v.z * frame.sine, y * frame.cos_azimuth + (-x) * frame.sin_azimuth, frame.sine * outwards + (-v.z) * frame.cosine};
 }
 
+} // namespace
+
+Vec3 ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3& weights) const {
+  const FaceDirections face = face_directions(corner);
+  const FaceFrame frame = face_frame(corner, face);
+  const RadialRange r = ranges_.over(frame.u_low, frame.u_high);
+  // Seen along the triangle of unit directions d_i, |sum m_i d_i|^2 = 1 - sum m_i m_j |d_i - d_j|^2 >= 1 - max / 3.
+  const double widest2 = 2 - 2 * std::min({face.cosine.x, face.cosine.y, face.cosine.z});
+  const double inverse_sag = 1 / (std::sqrt(std::max(1e-6, 1 - widest2 / 3)) - slack);
+  const std::array<double, 3>& inverse_rho = face.inverse_rho;
+  const Vec3 at(weights.x * inverse_rho[0], weights.y * inverse_rho[1], weights.z * inverse_rho[2]);
+  const Range inverse{std::min({inverse_rho[0], inverse_rho[1], inverse_rho[2]}), inverse_sag * std::max({inverse_rho[0], inverse_rho[1], inverse_rho[2]})};
+  const Range speed{std::min({at.x, at.y, at.z}), inverse_sag * std::max({at.x, at.y, at.z})}; // W / rho
+  const Range scale{speed.low * inverse.low, speed.high * inverse.high};
+  Vec3 second;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    const Vec3 v = corner[next]->eye - corner[k]->eye;
+    const double dw = weights[next] - weights[k];
+    const auto [along_meridian, across, away] = components_of(v, frame);
+    const Range turn = Range{dw, dw} + -1.0 * scaled(speed, away); // c of ErrorBound::edge
+    const Range change = scaled({2 * inverse.low, 2 * inverse.high}, turn);
+    const Range radial = scaled(scale, scaled(square(along_meridian), r.along) + scaled(square(across), r.across)) + change * (r.slope * along_meridian);
+    const Range sideways = scaled({2 * scale.low, 2 * scale.high}, r.twist * (along_meridian * across)) + change * (r.factor * across);
+    const double fastest = magnitude(along_meridian), kink = r.slope_jump > 0 ? 2 * fastest * fastest * scale.high * r.slope_jump : 0;
+    const double bound = norm(magnitude(radial), magnitude(sideways)) + kink;
+    second[k] = bound < infinity ? bound * (1 + slack) : infinity;
+  }
+  return second;
+}
+
+namespace {
+
+/// peak_error where the weights are 1.
+double peak_between(double at_a, double at_b, double arch) {
+  const double rise = at_b - at_a + 4 * arch;
+  return rise > 0 && rise < 8 * arch ? at_a + rise * rise / (16 * arch) : std::max(at_a, at_b);
+}
+
+} // namespace
+
 double peak_face(const Vec3& at, const Vec3& arch) {
+  if (!(arch.x < infinity && arch.y < infinity && arch.z < infinity)) return infinity;
   double peak = 0;
-  for (int k = 0; k < 3; ++k) peak = std::max(peak, peak_error(at[k], at[(k + 1) % 3], 8 * arch[k], 1, 1));
+  for (int k = 0; k < 3; ++k) peak = std::max(peak, peak_between(at[k], at[(k + 1) % 3], arch[k]));
   // Stationary in s = l1, t = l2: [p q; q r] (s, t) = (x, y).
   const double p = 8 * arch.z, r = 8 * arch.y, q = -4 * (arch.x - arch.y - arch.z);
   const double x = at.x - at.z + 4 * arch.z, y = at.y - at.z + 4 * arch.y, determinant = p * r - q * q;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "domewarp/core/vectors.h"
 #include "domewarp/profile/surface.h"
 #include "domewarp/refine/radial_ranges.h"
@@ -67,10 +69,9 @@ public:
   /// @param wa,wb weights at the ends
   EdgeBend edge(const Direction& a, const Direction& b, double wa, double wb) const;
 
-  /// Supremum over a face of |D^2 (W I)[v, v]|: of the second derivative along every segment v within it.
-  /// @param weights of a, b, c
-  /// @param dw change of the linear weight along v
-  double face(const Direction& a, const Direction& b, const Direction& c, const Vec3& weights, const Vec3& v, double dw) const;
+  /// Suprema over a face of |D^2 (W I)[v, v]| for its sides v (k from corner k to k + 1): of the second derivative along every
+  /// segment within it that is parallel to that side and as long; a quarter where it is half as long.
+  Vec3 face(const std::array<const Direction*, 3>& corner, const Vec3& weights) const;
 
   /// Bounds of every segment between two points of the figure, its weights linear: not as sharp as edge(), but in a fraction
   /// of the time. A figure within another never has larger bounds than that, up to rounding. Infinite when it is not small.

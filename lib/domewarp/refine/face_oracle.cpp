@@ -2,7 +2,9 @@
 // The part of the oracle that judges faces.
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "domewarp/mesh/weld.h"
@@ -30,57 +32,79 @@ bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const Ma
 // Two sides have arches, and on every segment parallel to the third the second derivative is that along it. Three such
 // bounds are open; the side with the lowest arch promises the least.
 bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, std::size_t& evaluations) const {
-  const int k = lowest({side[0].arch, side[1].arch, side[2].arch}), l = (k + 1) % 3, m = (k + 2) % 3;
-  const MappedPoint &a = *corner[k], &b = *corner[l], &c = *corner[m];
-  const Vec3 weights(a.mapped.weight, b.mapped.weight, c.mapped.weight);
-  const double inner = bound_.face(a, b, c, weights, b.eye - a.eye, weights.y - weights.x) / (8 * lowest_of(weights));
-  if (peak_face(Vec3(0), {inner, side[l].arch, side[m].arch}) <= options_.face_tolerance) return true;
-
-  std::array<int, 3> order{0, 1, 2}; // must not depend on how the face is stored
-  std::sort(order.begin(), order.end(), [&](int p, int q) { return precedes(corner[p]->eye, corner[q]->eye); });
-  std::array<DrawnPoint, 3> drawn_corner, middle;
-  for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*corner[order[i]]);
+  std::array<int, 3> order{0, 1, 2}; // nothing may depend on how the face is stored
+  const auto sort_two = [&](int i, int j) {
+    if (precedes(corner[order[j]]->eye, corner[order[i]]->eye)) std::swap(order[i], order[j]);
+  };
+  sort_two(0, 1);
+  sort_two(1, 2);
+  sort_two(0, 1);
+  std::array<const MappedPoint*, 3> sorted;
+  std::array<SideBound, 3> bound;
+  Vec3 weights, arches;
   for (int i = 0; i < 3; ++i) {
     const int from = order[i], to = order[(i + 1) % 3];
-    const double known = side[to == (from + 1) % 3 ? from : to].middle;
+    sorted[i] = corner[from];
+    bound[i] = side[to == (from + 1) % 3 ? from : to];
+    weights[i] = sorted[i]->mapped.weight;
+    arches[i] = bound[i].arch;
+  }
+  const Vec3 seconds = bound_.face({sorted[0], sorted[1], sorted[2]}, weights);
+  const int k = lowest(arches);
+  arches[k] = seconds[k] / (8 * lowest_of(weights));
+  if (peak_face(Vec3(0), arches) <= options_.face_tolerance) return true;
+
+  std::array<DrawnPoint, 3> drawn_corner, middle;
+  for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*sorted[i]);
+  for (int i = 0; i < 3; ++i) {
     const DrawnPoint &p = drawn_corner[i], &q = drawn_corner[(i + 1) % 3];
+    const double known = bound[i].middle;
     middle[i] = known < 0 ? between(p, q) : halfway(p, q);
     if (known >= 0) middle[i].off = known * middle[i].weight;
     evaluations += known < 0;
   }
-  return is_good_in_parts(drawn_corner, middle, depth, evaluations);
+  return are_parts_good(drawn_corner, middle, seconds, depth, evaluations);
 }
 
-// What the middles of the sides are off by is known; the bounds of the four parts cover the rest.
-bool EdgeOracle::is_good_in_parts(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, int depth,
-                                  std::size_t& evaluations) const {
+// What the middles of the sides are off by is known; the bounds of the four parts cover the rest. Side k of each part is
+// parallel to side k of the whole and half as long.
+bool EdgeOracle::are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const Vec3& seconds, int depth,
+                                std::size_t& evaluations) const {
   for (const DrawnPoint& m : middle)
     if (m.off > options_.face_tolerance * m.weight) return false;
-  const auto second = [&](const DrawnPoint& p, const DrawnPoint& q) { return bound_.edge(p, q, p.weight, q.weight).second; };
-  Vec3 inner;
-  for (int k = 0; k < 3; ++k) inner[k] = second(middle[k], middle[(k + 1) % 3]);
-  if (!is_part_good(middle, inner, depth, evaluations)) return false;
+  if (!is_part_good({middle[1], middle[2], middle[0]}, 0.25 * seconds, depth, evaluations)) return false;
   for (int k = 0; k < 3; ++k) {
-    const int before = (k + 2) % 3;
-    const Vec3 seconds(second(corner[k], middle[k]), inner[before], second(middle[before], corner[k]));
-    if (!is_part_good({corner[k], middle[k], middle[before]}, seconds, depth, evaluations)) return false;
+    std::array<DrawnPoint, 3> part;
+    part[k] = corner[k];
+    part[(k + 1) % 3] = middle[k];
+    part[(k + 2) % 3] = middle[(k + 2) % 3];
+    if (!is_part_good(part, 0.25 * seconds, depth, evaluations)) return false;
   }
   return true;
 }
 
-/// @param seconds second derivatives along the sides
+// In the order of their cost: the bounds of what it is a part of, its own, those of its sides, and those of its parts.
+/// @param seconds bounds of the second derivatives along the sides and the segments parallel to them
 bool EdgeOracle::is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const {
-  const int k = lowest(seconds);
-  const DrawnPoint &a = corner[k], &b = corner[(k + 1) % 3], &c = corner[(k + 2) % 3];
-  const Vec3 weights(a.weight, b.weight, c.weight);
-  const double inner = bound_.face(a, b, c, weights, b.eye - a.eye, b.weight - a.weight), least = lowest_of(weights);
-  const Vec3 arches = Vec3(inner, seconds[(k + 1) % 3], seconds[(k + 2) % 3]) / (8 * least);
-  if (peak_face(Vec3(a.off, b.off, c.off) / least, arches) <= options_.face_tolerance) return true;
+  const Vec3 weights(corner[0].weight, corner[1].weight, corner[2].weight);
+  const double least = lowest_of(weights);
+  const Vec3 at = Vec3(corner[0].off, corner[1].off, corner[2].off) / least;
+  const auto is_enough = [&](const Vec3& bounds) { return peak_face(at, bounds / (8 * least)) <= options_.face_tolerance; };
+  if (is_enough(seconds)) return true;
+  const Vec3 own = glm::min(seconds, bound_.face({&corner[0], &corner[1], &corner[2]}, weights));
+  if (is_enough(own)) return true;
+  const int k = lowest(own);
+  Vec3 sharper = own;
+  for (const int i : {(k + 1) % 3, (k + 2) % 3}) {
+    const DrawnPoint &p = corner[i], &q = corner[(i + 1) % 3];
+    sharper[i] = std::min(own[i], bound_.edge(p, q, p.weight, q.weight).second);
+  }
+  if (is_enough(sharper)) return true;
   if (depth == 1) return false;
   std::array<DrawnPoint, 3> middle;
   for (int i = 0; i < 3; ++i) middle[i] = between(corner[i], corner[(i + 1) % 3]);
   evaluations += 3;
-  return is_good_in_parts(corner, middle, depth - 1, evaluations);
+  return are_parts_good(corner, middle, own, depth - 1, evaluations);
 }
 
 double EdgeOracle::interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {

@@ -32,11 +32,11 @@ bool is_flipped(const std::array<const MappedPoint*, 3>& corner, int orientation
   return std::abs(volume) > 1e-12 * glm::length(a) * glm::length(u) * glm::length(v);
 }
 
-std::vector<std::uint32_t> sides_of_flipped_faces(const RefinedMesh& mesh, int orientation, double thickness) {
+std::vector<std::uint32_t> sides_of_flipped_faces(const RefinedMesh& mesh, std::size_t first, int orientation, double thickness) {
   constexpr std::size_t block_size = 8192;
-  std::vector<std::vector<std::uint32_t>> blocks((mesh.faces.size() + block_size - 1) / block_size);
+  std::vector<std::vector<std::uint32_t>> blocks((mesh.faces.size() - first + block_size - 1) / block_size);
   parallel_each(blocks.size(), 1, [&](std::size_t block) {
-    for (std::size_t f = block * block_size; f < std::min(mesh.faces.size(), (block + 1) * block_size); ++f) {
+    for (std::size_t f = first + block * block_size; f < std::min(mesh.faces.size(), first + (block + 1) * block_size); ++f) {
       const RefinedFace& face = mesh.faces[f];
       const std::array<const MappedPoint*, 3> corner{&mesh.points[face.point[0]], &mesh.points[face.point[1]], &mesh.points[face.point[2]]};
       if (!is_flipped(corner, orientation, thickness)) continue;

@@ -17,7 +17,8 @@ bool is_flipped(const std::array<const MappedPoint*, 3>& corner, int orientation
 /// Splitting a side takes three quarters of its bend away.
 /// @param orientation of the branch
 /// @param thickness image units: thinner faces may appear turned over (OracleOptions::turned_thickness)
+/// @param first of the final faces to look at
 /// @return edges of mesh.edges, ascending, each once; a function of positions alone, whatever the order of faces
-std::vector<std::uint32_t> sides_of_flipped_faces(const RefinedMesh& mesh, int orientation, double thickness);
+std::vector<std::uint32_t> sides_of_flipped_faces(const RefinedMesh& mesh, std::size_t first, int orientation, double thickness);
 
 } // namespace domewarp

@@ -110,12 +110,23 @@ private:
 
   /// A face none of whose edges needs a split: drawn, dropped, or given a vertex inside.
   void finish(const RefinedFace& face) {
+    if (is_well_inside(face)) {
+      if (const std::optional<Vec3> weights = error_vertex(face)) return insert(face, *weights);
+      block_.final.push_back(face);
+      return;
+    }
     const int hidden_by = hiding_boundary(state_, face);
     if (const std::optional<Vec3> weights = inner_vertex(face, hidden_by)) return insert(face, *weights);
     if (hidden_by < 0)
       block_.final.push_back(face);
     else
       ++block_.clipped;
+  }
+
+  bool is_well_inside(const RefinedFace& face) const {
+    const MappedPoint &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
+    const auto length2 = [](const Vec3& p, const Vec3& q) { return glm::dot(q - p, q - p); };
+    return oracle_.is_well_inside(std::max({length2(a.eye, b.eye), length2(b.eye, c.eye), length2(c.eye, a.eye)}), a, b, c);
   }
 
   /// Barycentric weights of the vertex that a finished face still needs inside, if any: where a principal axis

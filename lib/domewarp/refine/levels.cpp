@@ -40,9 +40,10 @@ void settle(LevelState& state, std::size_t decided, std::size_t max_triangles) {
 }
 
 /// Halves the sides that turn faces over, for all the faces on them. False when there are none.
-bool split_flipped_faces(LevelState& state) {
+/// @param unchecked the first final face that has not been looked at; what stays as it is does not turn over later
+bool split_flipped_faces(LevelState& state, std::size_t& unchecked) {
   RefinedMesh& mesh = state.mesh;
-  const std::vector<std::uint32_t> sides = sides_of_flipped_faces(mesh, state.oracle.orientation(), state.oracle.options().turned_thickness);
+  const std::vector<std::uint32_t> sides = sides_of_flipped_faces(mesh, unchecked, state.oracle.orientation(), state.oracle.options().turned_thickness);
   EdgeSplits splits;
   for (const std::uint32_t e : sides)
     if (const std::optional<MappedPoint> middle = state.oracle.middle(mesh.points[mesh.edges[e].a], mesh.points[mesh.edges[e].b]))
@@ -57,6 +58,7 @@ bool split_flipped_faces(LevelState& state) {
   const auto touched = std::stable_partition(mesh.faces.begin(), mesh.faces.end(), is_whole);
   state.active.assign(touched, mesh.faces.end());
   mesh.faces.erase(touched, mesh.faces.end());
+  unchecked = mesh.faces.size();
   split_faces(state);
   return true;
 }
@@ -66,9 +68,10 @@ bool split_flipped_faces(LevelState& state) {
 RefinedMesh refine_levels(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options) {
   LevelState state = start_levels(soup, oracle, options);
   settle(state, 0, options.max_triangles);
+  std::size_t unchecked = 0;
   for (int round = 0; round < most_unflipping_rounds && !state.mesh.stopped; ++round) {
     const std::size_t first_new = state.mesh.edges.size();
-    if (!split_flipped_faces(state)) break;
+    if (!split_flipped_faces(state, unchecked)) break;
     settle(state, first_new, options.max_triangles);
   }
   return std::move(state.mesh);
