@@ -89,6 +89,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) { // --help
     return app.exit(success);
+  } catch (const CLI::RequiredError&) {
+    std::cerr << "domewarp-bench: " << (argc > 1 ? "there is no bench '" + std::string(argv[1]) + "'" : "which bench?") << "; --help lists them\n";
+    return static_cast<int>(domewarp::ErrorCode::usage);
   } catch (const CLI::ParseError& error) {
     std::cerr << "domewarp-bench: " << error.what() << "\n";
     return static_cast<int>(domewarp::ErrorCode::usage);

@@ -48,7 +48,8 @@ std::string to_line(const BatchRow& row) {
   line << (row.up_to_date ? "up to date  " : "converted   ") << row.output.string() << "  " << row.triangles_in << " -> " << row.triangles_out
        << " triangles, " << std::setprecision(2) << row.error_px << " px";
   if (!row.up_to_date) line << std::fixed << ", " << row.seconds << " s";
-  if (!row.warnings.empty()) line << ", " << row.warnings.size() << " warning(s)";
+  if (!row.warnings.empty()) line << "; warning: " << row.warnings.front();
+  if (row.warnings.size() > 1) line << " (and " << row.warnings.size() - 1 << " more)";
   return line.str();
 }
 

@@ -135,6 +135,13 @@ CompareOptions compare_options(const Record& record, const Frame& warped) {
   return options;
 }
 
+/// @throws Error(input) for a file that was made of another scene
+void require_origin(const Arguments& arguments, const Scene& scene, const Record& record) {
+  const std::size_t triangles = count_triangles(scene);
+  if (record.triangles_in == 0 || record.triangles_in == triangles) return;
+  throw Error(ErrorCode::input, arguments.warped + ": was made of a scene of " + std::to_string(record.triangles_in) + " triangles, " + arguments.scene + " has " + std::to_string(triangles));
+}
+
 Comparison compare(const Arguments& arguments) {
   ReadOptions as_it_is; // the scene and the pose are the original's
   as_it_is.allow_external = arguments.read.allow_external;
@@ -143,6 +150,7 @@ Comparison compare(const Arguments& arguments) {
   c.record = parse_record(warped.extras, arguments.warped);
   const Record& record = c.record;
   const Scene scene = read_scene(arguments.scene, arguments.read);
+  require_origin(arguments, scene, record);
   const Surface surface(record.surface, screen_radius(record.raster));
   const ImageMap map = make_image_map(surface, Method::automatic);
   RayTraceOptions rays;

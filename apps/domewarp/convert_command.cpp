@@ -26,7 +26,8 @@ namespace {
 constexpr double default_fps = 30;
 
 struct Arguments {
-  std::string input, output, report;
+  std::string input, output;
+  std::optional<std::string> report;
   JobOptions job;
   std::optional<FrameRange> frames;
   std::optional<double> fps; ///< default_fps
@@ -97,10 +98,12 @@ bool convert_within(Arguments arguments, std::string& json) {
 int run(const Arguments& arguments) {
   require_surface(arguments.job.convert.surface);
   if (arguments.fps && !arguments.frames) throw Error(ErrorCode::usage, "--fps: needs --frames");
+  if (arguments.report && (is_same_file(*arguments.report, arguments.input) || std::filesystem::path(*arguments.report).lexically_normal() == std::filesystem::path(arguments.output).lexically_normal()))
+    throw Error(ErrorCode::usage, "--report " + *arguments.report + ": is the name of a scene; the report needs another");
   const ThreadLimit threads(arguments.threads);
   std::string json;
   const bool kept = arguments.max_memory > 0 ? convert_within(arguments, json) : convert_all(arguments, json);
-  if (!arguments.report.empty()) write_file(arguments.report, json);
+  if (arguments.report) write_file(*arguments.report, json);
   if (arguments.json) std::cout << json;
   return kept ? 0 : static_cast<int>(ErrorCode::unkept);
 }
@@ -123,7 +126,9 @@ void add_convert_command(CLI::App& app, int& status) {
   command->add_option_function<std::string>("--max-memory", [arguments](const std::string& text) {
            arguments->max_memory = parse_memory("--max-memory", text);
          }, "Refuse a scene that needs more memory, exit status 3")->type_name("MIB");
-  command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
+  command->add_option_function<std::string>("--threads", [arguments](const std::string& text) {
+           arguments->threads = static_cast<int>(std::min<std::size_t>(parse_count("--threads", text), 1024));
+         }, "Threads to use (default: all)")->type_name("N");
   command->add_flag("--json", arguments->json, "Print the report as JSON");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->callback([arguments, &status] { status = run(*arguments); });

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 #include "domewarp/profile/facts.h"
 #include "domewarp/profile/plot.h"
@@ -26,7 +29,7 @@ struct Arguments {
   Raster raster;
   Method method = Method::automatic;
   bool json = false;
-  std::string plot;
+  std::optional<std::string> plot;
 };
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
@@ -115,9 +118,11 @@ void print(const Surface& surface, const ImageMap& map) {
 
 int run(const Arguments& arguments) {
   require_surface(arguments.surface);
+  if (arguments.plot && std::filesystem::path(*arguments.plot).extension() != ".svg")
+    throw Error(ErrorCode::usage, "--plot: the name must end in .svg, got '" + *arguments.plot + "'");
   const Surface surface(arguments.surface, screen_radius(arguments.raster));
   const ImageMap map = make_image_map(surface, arguments.method);
-  if (!arguments.plot.empty()) write_file(arguments.plot, plot_svg(surface));
+  if (arguments.plot) write_file(*arguments.plot, plot_svg(surface));
   if (arguments.json)
     std::cout << to_json(surface, map);
   else

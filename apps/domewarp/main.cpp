@@ -2,6 +2,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include "commands.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/memory.h"
+#include "suggest.h"
 
 namespace {
 
@@ -54,10 +56,17 @@ int main(int argc, char** argv) {
   domewarp::add_project_command(app, status);
   domewarp::add_scenes_command(app, status);
   domewarp::add_figures_command(app, status);
+  if (const std::string wrong = argc > 1 ? domewarp::unknown_command(app, argv[1]) : ""; !wrong.empty()) {
+    std::cerr << "domewarp: " << wrong << "\n";
+    return static_cast<int>(domewarp::ErrorCode::usage);
+  }
   try {
     app.parse(join_values(app, argc, argv));
   } catch (const CLI::Success& success) { // --help, --version
-    return app.exit(success);
+    status = app.exit(success);
+  } catch (const CLI::ExtrasError&) {
+    std::cerr << "domewarp: " << domewarp::left_over(app) << "\n";
+    return static_cast<int>(domewarp::ErrorCode::usage);
   } catch (const CLI::ParseError& error) {
     std::cerr << "domewarp: " << error.what() << "\n";
     return static_cast<int>(domewarp::ErrorCode::usage);
@@ -67,6 +76,11 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::cerr << "domewarp: not enough memory\n";
     return static_cast<int>(domewarp::ErrorCode::unkept);
+  } catch (const std::system_error& error) { // no thread to be had, for instance
+    std::cerr << "domewarp: the system refuses: " << error.what() << "\n";
+    return static_cast<int>(domewarp::ErrorCode::unkept);
   }
-  return status;
+  if (std::cout.flush()) return status;
+  std::cerr << "domewarp: standard output: cannot be written\n";
+  return static_cast<int>(domewarp::ErrorCode::output);
 }

@@ -50,7 +50,8 @@ Vec3 parse_vector(const std::string& option, const std::string& text) {
   for (int i = 0; i < 3; ++i) {
     const std::size_t comma = i < 2 ? text.find(',', begin) : text.size();
     if (comma == std::string::npos) throw Error(ErrorCode::usage, option + ": needs three numbers X,Y,Z, got '" + text + "'");
-    v[i] = parse_number(option, text.substr(begin, comma - begin));
+    const std::size_t first = std::min(text.find_first_not_of(' ', begin), comma);
+    v[i] = parse_number(option, text.substr(first, comma - first));
     begin = comma + 1;
   }
   return v;
@@ -114,12 +115,15 @@ void add_view_options(CLI::App& app, ViewOptions& view) {
   add_vector("--forward", "Direction of the principal axis", view.forward);
   add_vector("--up", "Up direction (default: +y)", view.up);
   add(*group, "--camera", "A camera of the scene (default: its first; without any, an eye in front of the scene)", "NAME|INDEX",
-      [&view](const std::string& text) { view.camera = text; });
+      [&view](const std::string& text) {
+        if (text.empty()) throw Error(ErrorCode::usage, "--camera: is empty");
+        view.camera = text;
+      });
 }
 
 void add_surface_options(CLI::App& app, SurfaceOptions& surface) {
   auto* group = app.add_option_group("Surface");
-  add(*group, "--curve", "Profile curve z = f(r), for example 1-r^2", "EXPR", [&surface](const std::string& text) {
+  add(*group, "--curve", "Profile curve z = f(r) of the display, for example 1-r^2, in image units (1: half the picture's height); + - * / ^, pi, e, sqrt exp ln log log10 sin cos tan asin acos atan sinh cosh tanh abs min max pow", "EXPR", [&surface](const std::string& text) {
     if (text.empty()) throw Error(ErrorCode::usage, "--curve: is empty");
     surface.curve = text;
   });
@@ -128,10 +132,17 @@ void add_surface_options(CLI::App& app, SurfaceOptions& surface) {
                    [&surface](Lens lens) { surface.lens = lens; });
   add(*group, "--fov", "Full field of view of the lens, degrees (default 180)", "DEG",
       [&surface](const std::string& text) { surface.fov_deg = parse_positive("--fov", text); });
-  add(*group, "--profile", "Measured profile: rows of 'r z'", "FILE", [&surface](const std::string& text) {
+  add(*group, "--profile", "Measured profile of the display: rows of 'r z', in image units unless --profile-unit says otherwise", "FILE", [&surface](const std::string& text) {
     surface.profile = read_profile(text);
+    for (Vec2& row : surface.profile) row /= surface.profile_unit;
     surface.profile_name = text;
   });
+  add(*group, "--profile-unit", "Length in the profile's file that is one image unit, for example the dome's radius (default 1)", "LENGTH",
+      [&surface](const std::string& text) {
+        const double unit = parse_positive("--profile-unit", text);
+        for (Vec2& row : surface.profile) row *= surface.profile_unit / unit; // was read before
+        surface.profile_unit = unit;
+      });
   add(*group, "--rmax", "Largest image radius to show (default: the picture's corners)", "R",
       [&surface](const std::string& text) { surface.rmax = parse_positive("--rmax", text); });
   add(*group, "--projector", "Distance of the projector behind the eye, image units", "D",

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
+#include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 #include "domewarp/gltf/write.h"
 #include "domewarp/scene/test_scenes.h"
@@ -16,6 +17,7 @@ namespace domewarp {
 namespace {
 
 int run(const std::filesystem::path& folder) {
+  if (folder.empty()) throw Error(ErrorCode::usage, "--out: is empty");
   make_folder(folder);
   for (const TestScene& test : make_test_scenes()) {
     const std::filesystem::path file = folder / (test.name + ".glb");

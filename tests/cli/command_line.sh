@@ -42,6 +42,18 @@ refuses 1 --animation convert "$scene" -o out.glb --curve '1-r^2' --time 1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 3:1
 refuses 1 --frames convert "$scene" -o out.glb --curve '1-r^2' --frames 0:1
 refuses 1 --fps convert "$scene" -o out.glb --curve '1-r^2' --fps 3
+refuses 1 "did you mean convert?" convrt "$scene"
+refuses 1 "did you mean --tolerance?" convert "$scene" -o out.glb --curve '1-r^2' --tolerence 1
+refuses 1 "one word too many" convert "$scene" another -o out.glb --curve '1-r^2'
+refuses 1 "functions are sqrt" convert "$scene" -o out.glb --curve '1-sqr(r)'
+refuses 1 .svg curve --curve '1-r^2' --plot out.png
+refuses 1 --threads convert "$scene" -o out.glb --curve '1-r^2' --threads -1
+cp "$scene" in_scene.glb
+refuses 1 in_scene.glb convert in_scene.glb -o in_scene.glb --curve '1-r^2'
+refuses 1 --report convert in_scene.glb -o out.glb --curve '1-r^2' --report in_scene.glb
+refuses 1 --report convert in_scene.glb -o out.glb --curve '1-r^2' --report ./out.glb
+refuses 1 in_scene.glb batch in_scene.glb --out . --curve '1-r^2'
+check "the scene is still itself" cmp -s in_scene.glb "$scene"
 refuses 1 --fps convert "$scene" -o out.glb --curve '1-r^2' --fps 0 --frames 0:1 --animation 0
 refuses 1 --time convert "$scene" -o out.glb --curve '1-r^2' --time 1 --frames 0:1 --animation 0
 refuses 1 --shard batch "$scene" --out out --lens equidistant --shard 3/2
@@ -173,6 +185,35 @@ same "compare leaves the extension out" 0 $?
 "$domewarp" convert "$scene" -o vertical.glb --curve 'sqrt(1-r^2)' --boundary tangent --size 512x512 >stdout 2>stderr
 check "a vertical tangent leads nowhere" grep -q 'tangent is vertical' stderr
 rm -f clipped.* tangent.* vertical.*
+
+# What is written through a link or to a device leaves both what they are; a full disk is an error wherever it is met.
+touch target.json && ln -s target.json link.json
+"$domewarp" convert "$scene" -o linked.glb --curve '1-r^2' --size 64x64 --quiet --report link.json
+check "a link stays a link" [ -L link.json ]
+check "and leads to what was written" grep -q '"triangles"' target.json
+"$domewarp" convert "$scene" -o linked.glb --curve '1-r^2' --size 64x64 --quiet --report /dev/null
+same "a report to /dev/null" 0 $?
+check "/dev/null stays a device" [ -c /dev/null ]
+"$domewarp" convert "$scene" -o linked.glb --curve '1-r^2' --size 64x64 --quiet --report /dev/full 2>stderr
+same "a report to a full disk" 4 $?
+"$domewarp" curve --curve '1-r^2' >/dev/full 2>stderr
+same "standard output on a full disk" 4 $?
+rm -f linked.glb link.json target.json
+
+# Hidden folders and what batches have written are no scenes.
+mkdir -p folder/.hidden folder/deep
+cp "$scene" folder/.hidden && cp "$scene" folder/deep
+"$domewarp" batch folder --out folder/first --lens equidistant --size 64x64 --quiet
+"$domewarp" batch folder --out folder/second --lens equidistant --size 64x64 --quiet
+same "one scene, not its copies" "1 deep/cubes.glb" "$(cd folder/second && find . -name '*.glb' | wc -l) $(cd folder/second && find * -name '*.glb')"
+rm -rf folder
+
+# Another scene than the one a file was made of.
+"$domewarp" convert "$scene" -o other.glb --curve '1-r^2' --size 64x64 --quiet 2>/dev/null
+"$domewarp" compare "$root/data/pool.glb" other.glb >stdout 2>stderr
+same "compare with another scene" 2 $?
+check "compare says which" grep -q '336 triangles, .*pool.glb has 2020' stderr
+rm -f other.glb
 
 # The generator still makes the committed scenes, byte for byte.
 "$domewarp" scenes --out scenes >/dev/null

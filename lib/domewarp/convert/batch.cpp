@@ -152,10 +152,14 @@ public:
     threads_ = std::max(1, processors_or(0) / report_.jobs);
     Scheduler scheduler(std::move(tasks), static_cast<double>(options_.max_memory));
     std::vector<std::jthread> workers;
-    for (int i = 0; i < report_.jobs; ++i)
-      workers.emplace_back([&] {
-        while (const auto task = scheduler.take()) work(scheduler, *task);
-      });
+    const auto take_turns = [&] {
+      while (const auto task = scheduler.take()) work(scheduler, *task);
+    };
+    try {
+      while (static_cast<int>(workers.size()) + 1 < report_.jobs) workers.emplace_back(take_turns);
+    } catch (const std::system_error&) { // no room for another thread: those that are there do the work
+    }
+    take_turns();
     workers.clear(); // joins
     report_.seconds = seconds_since(start_);
     report_.peak_memory_mb = static_cast<double>(peak_memory()) / (1 << 20);

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "domewarp/convert/manifest.h"
+#include "domewarp/convert/stamp.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
 
@@ -107,15 +108,22 @@ private:
     std::error_code status;
     fs::recursive_directory_iterator entry(folder, status), end;
     for (; !status && entry != end; entry.increment(status)) {
-      if (entry->is_directory(status) && fs::weakly_canonical(entry->path(), status) == out_) {
-        entry.disable_recursion_pending();
+      const bool is_hidden = entry->path().filename().string().starts_with('.');
+      if (entry->is_directory(status)) {
+        if (is_hidden || is_output_folder(entry->path())) entry.disable_recursion_pending();
         continue;
       }
-      if (!is_scene_name(entry->path()) || !entry->is_regular_file(status)) continue;
+      if (is_hidden || !is_scene_name(entry->path()) || !entry->is_regular_file(status)) continue;
       const fs::path below = entry->path().lexically_relative(folder);
       wishes_.push_back({entry->path(), (kept / below).replace_extension(), true, &arguments, where});
     }
     if (status) throw Error(ErrorCode::input, folder.string() + ": cannot be searched: " + status.message());
+  }
+
+  /// Of this batch or an earlier one.
+  bool is_output_folder(const fs::path& folder) const {
+    std::error_code status;
+    return fs::weakly_canonical(folder, status) == out_ || fs::is_directory(folder / stamp_folder, status);
   }
 
   void add_manifest(const fs::path& path) {
@@ -135,7 +143,7 @@ private:
 
   static void check_inside(const fs::path& output, const std::string& where) {
     const fs::path normal = output.lexically_normal();
-    if (output.is_absolute() || normal.string().starts_with("..") || (!normal.empty() && normal.begin()->string() == ".domewarp"))
+    if (output.is_absolute() || normal.string().starts_with("..") || (!normal.empty() && normal.begin()->string() == stamp_folder))
       throw Error(ErrorCode::input, where + ".output: must stay inside the output folder, got '" + output.string() + "'");
   }
 
@@ -160,12 +168,16 @@ private:
   std::vector<BatchItem> settle_outputs() {
     std::map<fs::path, int> wanted;
     for (const Wish& wish : wishes_) ++wanted[output_of(wish, false).lexically_normal()];
-    std::map<fs::path, const Wish*> taken, folders;
+    std::map<fs::path, const Wish*> taken, folders, inputs;
+    std::error_code status;
+    for (const Wish& wish : wishes_) inputs.emplace(fs::weakly_canonical(wish.input, status), &wish);
     std::vector<BatchItem> items;
     for (const Wish& wish : wishes_) {
       const bool alone = wanted[output_of(wish, false).lexically_normal()] == 1;
       const fs::path output = output_of(wish, !alone).lexically_normal();
       require_free(taken, output, wish);
+      if (inputs.contains(fs::weakly_canonical(options_.out / output, status)))
+        throw Error(ErrorCode::usage, (options_.out / output).string() + ": is a scene to convert and would be overwritten; --out needs another folder");
       if (lower_extension(output) == ".gltf") require_free(folders, output.parent_path() / "", wish);
       items.push_back({wish.input, output, canonical_text(*wish.arguments), parse(wish)});
     }

@@ -40,13 +40,14 @@ struct PlanOptions {
 };
 
 /// The scenes that the inputs stand for, ordered by output. An input is a scene file, a folder (its .glb and .gltf files at
-/// any depth, in folders of the same names; symbolic links to folders are not followed), or a manifest (.json). A
+/// any depth, in folders of the same names; hidden files and folders and output folders of batches are left out, symbolic links to
+/// folders are not followed), or a manifest (.json). A
 /// manifest's defaults overrule `arguments`, a scene's options its defaults; a curve, lens or profile takes the place of
 /// another, and so do target and forward, eye and camera. Outputs that would have one name get the input's
 /// extension into it (a_gltf.glb). A .gltf output has a folder of its own.
 /// @throws Error(input) for a manifest that cannot be read or has a bad option (with line, column and key), a folder
 ///         that cannot be read, outputs of a manifest that collide or leave the output folder, no scene at all;
-///         Error(usage) for bad `arguments`
+///         Error(usage) for bad `arguments`, an output that is an input
 std::vector<BatchItem> plan_batch(const std::vector<std::string>& inputs, const PlanOptions& options);
 
 /// Every count-th item from the index-th (from 1).

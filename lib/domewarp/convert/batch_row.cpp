@@ -32,7 +32,7 @@ std::string to_json(const BatchRow& row) {
                      {"exit_code", exit_code(row.status)},
                      {"message", row.message},
                      {"triangles", {{"input", row.triangles_in}, {"output", row.triangles_out}}},
-                     {"error_px", row.error_px},
+                     {"error_px", row.status == BatchStatus::converted || row.status == BatchStatus::unkept ? Json(row.error_px) : Json()},
                      {"tolerance_px", row.tolerance_px},
                      {"seconds", row.seconds},
                      {"warnings", row.warnings}};
@@ -48,7 +48,7 @@ bool parse_row(const std::string& text, BatchRow& row) {
     row.message = json.at("message").get<std::string>();
     row.triangles_in = json.at("triangles").at("input").get<std::size_t>();
     row.triangles_out = json.at("triangles").at("output").get<std::size_t>();
-    row.error_px = json.at("error_px").get<double>();
+    row.error_px = json.at("error_px").is_number() ? json["error_px"].get<double>() : 0;
     row.tolerance_px = json.at("tolerance_px").get<double>();
     row.seconds = json.at("seconds").get<double>();
     row.warnings = json.at("warnings").get<std::vector<std::string>>();

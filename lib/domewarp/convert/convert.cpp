@@ -42,7 +42,7 @@ std::vector<Light> lights_in_eye_space(const Scene& scene, const View& view, std
     lights.back().world[3] = Vec4(0, 0, 0, 1);
   }
   if (lights.size() < scene.lights.size())
-    warnings.push_back("left out " + std::to_string(scene.lights.size() - lights.size()) + " point or spot light(s), which would shine wrongly on warped surfaces");
+    warnings.push_back("left out " + std::to_string(scene.lights.size() - lights.size()) + " point or spot light(s), which would shine wrongly on warped surfaces: --shading bake puts their light into the colours, --shading unlit does without");
   return lights;
 }
 

@@ -38,6 +38,9 @@ std::size_t expected_points(const Scene& scene, const ConvertOptions& options);
 
 /// What a conversion did; `to_json` (report.h) is its written form.
 struct ConvertReport {
+  std::string input, output;    ///< names of the files, of run_job
+  std::string animation;        ///< that posed the scene, of run_job
+  double time = 0;              ///< of the animation, seconds
   RefineReport refine;
   View view;                    ///< as resolved
   double r_max = 0;

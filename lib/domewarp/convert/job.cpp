@@ -2,13 +2,30 @@
 #include "domewarp/convert/job.h"
 
 #include "domewarp/convert/packing_error.h"
+#include "domewarp/core/errors.h"
+#include "domewarp/core/files.h"
 #include "domewarp/gltf/geometric_extensions.h"
+#include "domewarp/gltf/survey.h"
 #include "domewarp/gltf/vertex_order.h"
 
 namespace domewarp {
 
+namespace {
+
+/// No output over the scene or what it refers to.
+void require_apart(const std::filesystem::path& input, const std::filesystem::path& output, bool allow_external) {
+  if (is_same_file(input, output)) throw Error(ErrorCode::usage, output.string() + ": is the scene itself; the warped one needs another name");
+  std::filesystem::path binary = output;
+  if (binary.replace_extension(".bin"); output.extension() != ".gltf" || !std::filesystem::exists(binary)) return;
+  for (const std::filesystem::path& side : survey_file(input, allow_external).side_files)
+    if (is_same_file(side, binary)) throw Error(ErrorCode::usage, output.string() + ": its " + binary.filename().string() + " is part of the scene; the warped one needs another name");
+}
+
+} // namespace
+
 ConvertReport run_job(const std::filesystem::path& input, const std::filesystem::path& output, const JobOptions& options,
                       DisplayCache* displays, const Progress& progress) {
+  require_apart(input, output, options.read.allow_external);
   tell(progress, "read");
   Scene scene = read_scene(input, options.read);
   if (!scene.extras.empty()) scene.warnings.push_back("is warped already, and is warped once more");
@@ -16,6 +33,10 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
     scene.warnings.push_back("shows the rest pose and not its " + std::to_string(scene.animations) +
                              " animation(s): --animation poses the scene, --frames writes every frame");
   ConvertReport report;
+  report.input = input.string();
+  report.output = output.string();
+  report.animation = options.read.animation;
+  report.time = options.read.time;
   Scene warped;
   if (displays != nullptr) {
     const auto display = displays->find(options.convert.surface, options.convert.raster, options.convert.method,

@@ -19,7 +19,7 @@ struct JobOptions {
 
 /// Reads a scene, converts it and writes it. `output` appears complete or not at all.
 /// @param displays shared by many jobs, or null
-/// @throws Error as read_scene, convert and write_scene do
+/// @throws Error(usage) when `output` would overwrite the input or what it refers to, Error as read_scene, convert and write_scene do
 ConvertReport run_job(const std::filesystem::path& input, const std::filesystem::path& output, const JobOptions& options,
                       DisplayCache* displays = nullptr, const Progress& progress = {});
 

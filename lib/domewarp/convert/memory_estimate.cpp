@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/convert/memory_estimate.h"
 
+#include <cmath>
+
 namespace domewarp {
 
 namespace {
 
-std::string mib(double bytes) { return std::to_string(static_cast<long long>(bytes / (1 << 20))) + " MiB"; }
+std::string mib(double bytes) { return std::to_string(std::llround(std::ceil(bytes / (1 << 20)))) + " MiB"; }
 
 } // namespace
 

@@ -125,6 +125,7 @@ Record parse_record(const std::string& text, const std::string& name) {
     record.error_px = json.contains("error_px") && json["error_px"].is_number() ? json["error_px"].get<double>() : nan;
     const bool bounded = json.contains("depth_error") && json["depth_error"].is_number();
     record.depth_error = bounded ? json["depth_error"].get<double>() : RefineOptions{}.depth_tolerance;
+    if (json.contains("triangles")) record.triangles_in = json["triangles"].value("input", std::size_t{0});
     return record;
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::input, name + ": asset.extras.domewarp cannot be understood: " + error.what());

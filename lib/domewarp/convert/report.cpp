@@ -86,6 +86,11 @@ Json cracks_json(const RefineReport& refine, Subdivision subdivision) {
           {"max_gap_px", refine.max_gap_px}};
 }
 
+/// Whether it is the depth rather than the displacement that made the triangles as small as they are.
+bool depth_decides(const RefineReport& refine, const RefineOptions& options) {
+  return refine.depth_error_max > 0.8 * options.depth_tolerance && refine.error_px_max < 0.5 * options.tolerance_px;
+}
+
 } // namespace
 
 std::string to_json(const ConvertReport& report, const ConvertOptions& options) {
@@ -137,7 +142,11 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["limits_hit"] = refine.limits_hit;
   json["warnings"] = report.warnings;
   json["dropped_extensions"] = report.dropped_extensions;
-  return json.dump(2) + "\n";
+  json["version"] = DOMEWARP_VERSION;
+  if (!report.input.empty()) json["files"] = {{"input", report.input}, {"output", report.output}};
+  if (!report.animation.empty()) json["pose"] = {{"animation", report.animation}, {"time_s", report.time}};
+  json["size"] = {options.raster.width, options.raster.height};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; // file names need not be UTF-8
 }
 
 std::string to_text(const ConvertReport& report, const ConvertOptions& options) {
@@ -155,7 +164,8 @@ std::string to_text(const ConvertReport& report, const ConvertOptions& options) 
          << " divisions; neither error nor cracks are bounded\n";
   else
     text << "error       at most " << refine.error_px_max << " px (tolerance " << options.refine.tolerance_px << "), mean "
-         << refine.error_px_mean << " px; depth " << 100 * refine.depth_error_max << " %\n"
+         << refine.error_px_mean << " px; depth " << 100 * refine.depth_error_max << " %"
+         << (depth_decides(refine, options.refine) ? " (--depth-tolerance decides here)" : "") << "\n"
          << "cracks      " << refine.open_edges << " open edges that the source did not have; " << refine.t_junctions_in
          << " T-junctions of the source mended\n";
   if (report.packing_px > 0) text << "packing     moves points by at most " << report.packing_px << " px more\n";

@@ -13,7 +13,7 @@ namespace domewarp {
 
 namespace fs = std::filesystem;
 
-fs::path stamp_path(const fs::path& out, const fs::path& output) { return out / ".domewarp" / (output.string() + ".json"); }
+fs::path stamp_path(const fs::path& out, const fs::path& output) { return out / stamp_folder / (output.string() + ".json"); }
 
 void write_stamp(const fs::path& out, const BatchRow& row, const std::string& fingerprint) {
   const fs::path path = stamp_path(out, row.output);

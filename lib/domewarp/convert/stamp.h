@@ -9,6 +9,9 @@
 
 namespace domewarp {
 
+/// The folder below an output folder where a batch notes what it has made.
+inline constexpr const char* stamp_folder = ".domewarp";
+
 /// Where a batch notes how an output was made: OUT/.domewarp/<output>.json.
 std::filesystem::path stamp_path(const std::filesystem::path& out, const std::filesystem::path& output);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <system_error>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,6 +31,24 @@ std::vector<std::uint8_t> read_file(const fs::path& path) {
 
 namespace {
 
+[[noreturn]] void fail_to_write(const fs::path& path) {
+  throw Error(ErrorCode::output, path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+using Parts = std::initializer_list<std::span<const std::uint8_t>>;
+
+/// False when something went wrong; errno says what.
+bool write_all(int descriptor, const Parts& parts) {
+  for (std::span<const std::uint8_t> bytes : parts)
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  return true;
+}
+
 class TemporaryFile {
 public:
   explicit TemporaryFile(const fs::path& target)
@@ -44,13 +63,8 @@ public:
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  void write(std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail();
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
+  void write(const Parts& parts) {
+    if (!write_all(descriptor_, parts)) fail();
   }
 
   void commit() {
@@ -66,9 +80,10 @@ public:
 
 private:
   [[noreturn]] void fail() const {
-    const std::string reason = std::strerror(errno);
+    const int reason = errno;
     if (descriptor_ >= 0) ::unlink(name_.c_str());
-    throw Error(ErrorCode::output, target_.string() + ": cannot be written: " + reason);
+    errno = reason;
+    fail_to_write(target_);
   }
 
   fs::path target_;
@@ -77,11 +92,29 @@ private:
   bool committed_ = false;
 };
 
+/// Into what is there already and is no file.
+void write_device(const fs::path& path, const Parts& parts) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_to_write(path);
+  const bool written = write_all(descriptor, parts);
+  const int reason = errno;
+  ::close(descriptor);
+  errno = reason;
+  if (!written) fail_to_write(path);
+}
+
 } // namespace
 
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code status;
+  return fs::equivalent(a, b, status);
+}
+
 void write_file(const fs::path& path, std::initializer_list<std::span<const std::uint8_t>> parts) {
-  TemporaryFile file(path);
-  for (const std::span<const std::uint8_t> part : parts) file.write(part);
+  std::error_code status;
+  if (fs::is_other(path, status)) return write_device(path, parts);
+  TemporaryFile file(fs::is_symlink(path, status) ? fs::weakly_canonical(path, status) : path);
+  file.write(parts);
   file.commit();
 }
 

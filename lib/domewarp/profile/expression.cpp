@@ -43,6 +43,12 @@ constexpr std::array<NamedFunction, 18> functions{{
 
 constexpr std::string_view operand_wanted = "expected a number, r, pi, e, a function or '('";
 
+std::string function_names() {
+  std::string names;
+  for (const NamedFunction& function : functions) names.append(names.empty() ? "" : " ").append(function.name);
+  return names;
+}
+
 // <cctype> depends on the locale.
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -135,7 +141,7 @@ private:
       } else if (take('/')) {
         signed_power();
         divide();
-      } else if (follows_number()) {
+      } else if (factor_follows()) {
         signed_power();
         pop_into(Operation::multiply);
       } else {
@@ -196,6 +202,7 @@ private:
     if (!take('(')) fail(std::string(operand_wanted));
     sum();
     want(')', "expected an operator or ')'");
+    factor_end_ = at_;
   }
 
   void number() {
@@ -206,19 +213,20 @@ private:
     if (status != std::errc()) fail(std::string(operand_wanted));
     const std::string_view digits = text_.substr(at_, static_cast<std::size_t>(end - first));
     at_ += digits.size();
-    number_end_ = at_;
+    factor_end_ = at_;
     push_constant(value, parse_quad(digits));
   }
 
-  // 2.5r^2, 0.2cos(8r), r^2(1+r).
-  bool follows_number() const {
-    return at_ > 0 && at_ == number_end_ && at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '(');
+  // 2.5r^2, 0.2cos(8r), r^2(1+r), r(r+1): a product without a sign.
+  bool factor_follows() const {
+    return at_ > 0 && at_ == factor_end_ && at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '(');
   }
 
   void name() {
     const std::size_t start = at_;
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
+    factor_end_ = at_;
     if (word == "r") return push({Operation::variable});
     if (word == "pi") return push_constant(std::numbers::pi, quad_pi());
     if (word == "e") return push_constant(std::numbers::e, quad_e());
@@ -226,7 +234,7 @@ private:
                                     [word](const NamedFunction& function) { return function.name == word; });
     if (found != functions.end()) return call(*found);
     refuse("--curve", "column " + std::to_string(start + 1) + ": " + std::string(operand_wanted) +
-                          " but found the name '" + std::string(word.substr(0, 32)) + "'");
+                          " but found the name '" + std::string(word.substr(0, 32)) + "'; functions are " + function_names());
   }
 
   void call(const NamedFunction& function) {
@@ -238,13 +246,14 @@ private:
       sum();
     }
     want(')', "expected an operator or ')'");
+    factor_end_ = at_;
     if (function.operation == Operation::power) return raise(second);
     if (function.arguments == 2) return pop_into(function.operation);
     emit(function.operation);
   }
 
   std::string_view text_;
-  std::size_t at_ = 0, number_end_ = 0;
+  std::size_t at_ = 0, factor_end_ = 0;
   int depth_ = 0;
   std::vector<Instruction> code_;
   std::size_t height_ = 0, deepest_ = 0;

@@ -23,6 +23,7 @@ struct SurfaceOptions {
   std::optional<Lens> lens;
   double fov_deg = 180;          ///< full field of view of the lens; its edge falls on image radius 1
   std::vector<Vec2> profile;     ///< measured rows (r, z), r strictly increasing from 0, shape-preserving cubic
+  double profile_unit = 1;       ///< length in the file that is one image unit; `profile` has been divided by it
   std::string profile_name;      ///< file the rows came from, for messages
   std::optional<double> rmax;    ///< image radius the user wants to see at most
   std::optional<double> projector; ///< distance of the projector behind the eye, image units

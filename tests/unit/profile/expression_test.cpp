@@ -171,15 +171,17 @@ TEST(Expression, PowerIsRightAssociativeAndBindsTighterThanMinus) {
   EXPECT_EQ(evaluate(compile("8/r/2"), 2), 2);
 }
 
-TEST(Expression, ANumberMultipliesTheNameThatFollowsIt) {
+TEST(Expression, AProductNeedsNoSignWhereAFactorFollows) {
   EXPECT_EQ(evaluate(compile("2.5r^2"), 2), 10);
+  EXPECT_EQ(evaluate(compile("r(r+1)"), 2), 6);
+  EXPECT_EQ(evaluate(compile("(r+1)(r-1)sqrt(4r(r))"), 2), 12);
+  EXPECT_EQ(evaluate(compile("1/2r"), 2), 1);
   EXPECT_EQ(evaluate(compile("1-2r"), 3), -5);
   EXPECT_EQ(evaluate(compile("r^2(1+r)"), 2), 12);
   EXPECT_EQ(evaluate(compile("2e3r"), 1), 2000);
   EXPECT_DOUBLE_EQ(evaluate(compile("2e"), 1), 2 * 2.718281828459045);
   EXPECT_NE(complaint("2 r"), "");
   EXPECT_NE(complaint("r r"), "");
-  EXPECT_NE(complaint("r(2)"), "");
 }
 
 TEST(Expression, ErrorsNameTheColumnAndWhatWasExpected) {
