@@ -91,8 +91,9 @@ Pixels cross_section(const SurfaceOptions& options, const Raster& shape, const R
   for (const Vec2& p : curve_between(whole, 0, std::min(reach, whole.r_max()), 1)) low = std::min(low, p.y), high = std::max(high, p.y);
   low = std::max(low, std::min(-0.25, visible.meridian(visible.r_max() * (1 - 1e-9))->y) - 0.6);
   const double plane = low - 0.35;
-  const double scale = std::min(raster.width / (2.1 * reach), raster.height / (high - plane + 0.5));
-  const Frame2 frame{scale, 0.5 * raster.width, raster.height - 0.25 * scale + plane * scale};
+  const double size = std::max(9.0, raster.height / 26.0), label = 1.8 * size; // a band below for what is drawn
+  const double scale = std::min(raster.width / (2.1 * reach), (raster.height - label) / (high - plane + 0.35));
+  const Frame2 frame{scale, 0.5 * raster.width, raster.height - label - 0.1 * scale + plane * scale};
   Canvas canvas(raster.width, raster.height, paper);
   canvas.line({frame({-reach, 0}), frame({reach, 0})}, grey, 1);
   canvas.line({frame({0, plane}), frame({0, high + 0.2})}, grey, 1);
@@ -113,7 +114,8 @@ Pixels cross_section(const SurfaceOptions& options, const Raster& shape, const R
     draw_piece(canvas, frame, visible, start, end_of_piece(visible, start, 0.35), plane);
   }
   canvas.ring(frame({0, 0}), 0.012 * raster.width, ink, 2);
-  canvas.text(8, raster.height - 8, std::max(9.0, raster.height / 26.0), "f(r) = " + options.curve, ink);
+  canvas.rectangle(0, raster.height - label, raster.width, label, paper);
+  canvas.text(8, raster.height - 0.5 * size, size, "f(r) = " + options.curve, ink);
   return canvas.pixels();
 }
 

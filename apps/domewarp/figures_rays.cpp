@@ -75,7 +75,7 @@ void add_samples(const Studio& studio, std::vector<Figure>& figures) {
   figures.push_back({"23b'", "enlarged", enlarge(colours(fine), rim)});
 }
 
-/// A bright square of half a pixel before a dark wall, beside the rays through the pixels' centres.
+/// A bright square before a dark wall, less than half a pixel wide, between the centre and a corner of a pixel.
 Scene make_speck(const Raster& raster) {
   Scene scene;
   const auto add = [&scene](const Vec3& centre, double half, const Vec4& colour) {
@@ -92,7 +92,7 @@ Scene make_speck(const Raster& raster) {
   };
   const double pixel = pixel_size(raster);
   add(Vec3(0, 0, -2), 8, Vec4(0.05, 0.06, 0.1, 1));
-  add(Vec3(pixel, pixel, -1), 0.25 * pixel, Vec4(1, 0.8, 0.2, 1)); // the corner of four pixels
+  add(Vec3(1.76 * pixel, 1.76 * pixel, -1), 0.23 * pixel, Vec4(1, 0.8, 0.2, 1)); // the centres are halves
   return scene;
 }
 
@@ -109,7 +109,7 @@ void add_speck(std::vector<Figure>& figures, int samples) {
         const std::uint8_t* p = &frame.rgba[4 * std::size_t(y / 40 * 16 + x / 40)];
         large.rgba.insert(large.rgba.end(), p, p + 4);
       }
-    figures.push_back({outlines ? "20b" : "20a", outlines ? "half a pixel, found" : "by contrast: missed", std::move(large)});
+    figures.push_back({outlines ? "20b" : "20a", outlines ? "small object, found" : "by contrast: missed", std::move(large)});
   }
 }
 

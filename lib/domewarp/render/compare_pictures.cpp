@@ -148,17 +148,21 @@ Pixels crack_picture(const CompareReport& report, const Frame& warped) {
 
 Pixels wireframe_picture(const Frame& warped, const Screen& screen) {
   Pixels pixels = colours(warped);
-  constexpr double half_width = 0.6;
+  constexpr double half_width = 0.5, opacity = 0.8;
   parallel_each(std::size_t(warped.height), 16, [&](std::size_t row) {
     for (std::size_t column = 0; column < std::size_t(warped.width); ++column) {
       const std::size_t i = row * std::size_t(warped.width) + column;
       const ScreenTriangle* t = find_triangle(screen, warped.object[i], warped.triangle[i] - 1);
       if (!t) continue;
       const Vec2 centre(double(column) + 0.5, double(row) + 0.5);
-      double distance = half_width;
+      double distance = half_width + 0.5;
       for (std::size_t k = 0; k < 3; ++k)
         distance = std::min(distance, distance_to_edge(centre, t->corners[k].pixel, t->corners[(k + 1) % 3].pixel));
-      if (distance < half_width) paint(pixels, i, white);
+      const double share = opacity * std::clamp(half_width + 0.5 - distance, 0.0, 1.0);
+      Colour colour;
+      for (std::size_t k = 0; k < 3; ++k)
+        colour[k] = static_cast<std::uint8_t>(std::lround((1 - share) * pixels.rgba[4 * i + k] + share * white[k]));
+      paint(pixels, i, colour);
     }
   });
   return pixels;

@@ -2,7 +2,7 @@
 //
 // A picture in which everything may be displaced by a bound shows, at a pixel, any surface that nothing hides somewhere
 // within the bound around the pixel. So the rays around a pixel decide: at its centre, at the place of what it shows,
-// and on two circles, the outer one with the bound as its radius. Where those find a flaw, hundreds more over the whole
+// and on two circles, the outer one with the bound as its radius. Where those find a flaw, thousands more over the whole
 // disc look for what they may have missed: a sliver, or a hole in a masked texture.
 #include "domewarp/render/pixel_judge.h"
 
@@ -58,11 +58,11 @@ struct PixelJudge::Probe {
 };
 
 /// The rays around a pixel, traced as they are asked for: the centre first, then the circle of the bound, then one of
-/// half its radius, each turned by half a step against the other; then Vogel's spiral, whose rays lie evenly, a fourteenth
-/// of the bound apart.
+/// half its radius, each turned by half a step against the other; then Vogel's spiral, whose rays lie evenly, a 25th of
+/// the bound apart.
 class PixelJudge::Probes {
  public:
-  static constexpr int outer = 16, inner = 8, few = 1 + outer + inner, spiral = 512, count = few + spiral;
+  static constexpr int outer = 16, inner = 8, few = 1 + outer + inner, spiral = 2048, count = few + spiral;
 
   Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {}
 

@@ -167,12 +167,24 @@ std::array<int, 2> pixel_range(const GridTriangle& grid, std::size_t axis, int f
           static_cast<int>(std::min<std::int64_t>(pixel(high), last))};
 }
 
+/// A triangle without area in the scene closes the gap between the drawn courses of its long side and its two short ones:
+/// it covers what its neighbours cover. Judged by its source positions, which are float32.
+bool has_area(const ScreenTriangle& triangle) {
+  const Vec3 &a = triangle.corners[0].source, &b = triangle.corners[1].source, &c = triangle.corners[2].source;
+  const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  double farthest = 0;
+  for (const ScreenCorner& corner : triangle.corners)
+    farthest = std::max({farthest, std::abs(corner.source.x), std::abs(corner.source.y), std::abs(corner.source.z)});
+  constexpr double rounding = 4 * 6e-8; // of corners that lie up to three roundings off their line
+  return glm::length(glm::cross(b - a, c - a)) > rounding * farthest * longest;
+}
+
 void count_triangle(const ScreenTriangle& triangle, const Frame& frame, double depth_bound, int top, int bottom,
                     std::vector<std::uint8_t>& covers_of) {
   const auto [low, high] = std::minmax(
       {triangle.corners[0].pixel.y, triangle.corners[1].pixel.y, triangle.corners[2].pixel.y});
   GridTriangle grid;
-  if (!triangle.opaque || high < top || low > bottom || !snap(triangle, std::int64_t{1} << (frame.subpixel_bits >= 1 ? frame.subpixel_bits : 8), grid)) return;
+  if (!triangle.opaque || high < top || low > bottom || !has_area(triangle) || !snap(triangle, std::int64_t{1} << (frame.subpixel_bits >= 1 ? frame.subpixel_bits : 8), grid)) return;
   const auto [first_row, last_row] = pixel_range(grid, 1, top, bottom - 1);
   const auto [first, last] = pixel_range(grid, 0, 0, frame.width - 1);
   double weights[3];

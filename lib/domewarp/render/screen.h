@@ -42,7 +42,8 @@ const ScreenTriangle* find_triangle(const Screen& screen, std::uint32_t object, 
 /// How often the surface that a frame shows at a pixel covers its centre: the triangles of the same object whose source
 /// position there is as far away as the frame's (relative to `depth_bound`). 1 where all is well, 0 where the frame shows
 /// nothing. Covers as OpenGL does: corners on the frame's subpixel grid (1/256 pixel
-/// when it names none), top-left rule. Only opaque materials count.
+/// when it names none), top-left rule. Only opaque materials count, and only triangles
+/// that have an area in the scene.
 /// @param frame of the same scene, with source positions
 std::vector<std::uint8_t> count_covers(const Screen& screen, const Frame& frame, double depth_bound);
 
