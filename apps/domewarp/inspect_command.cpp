@@ -45,7 +45,9 @@ int run(const Arguments& arguments) {
   for (const std::string& warning : scene.warnings) std::cerr << "domewarp: warning: " << warning << "\n";
   std::cout << (arguments.json ? to_json(report) : to_text(report));
   if (!arguments.strict || is_sound(report)) return 0;
-  std::cerr << "domewarp: " << arguments.file << ": has cracks, flips or lost area\n";
+  const bool is_exact = !report.cracks || report.cracks->exact_provenance;
+  std::cerr << "domewarp: " << arguments.file << ": has cracks, flips or lost area"
+            << (is_exact ? "\n" : ", as far as its picture tells; rims and packing can look so: judge what convert --source-attributes writes\n");
   return static_cast<int>(ErrorCode::unkept);
 }
 
@@ -60,7 +62,7 @@ void add_inspect_command(CLI::App& app, int& status) {
   command->add_option_function<std::string>("--hausdorff", [arguments](const std::string& text) { arguments->hausdorff = parse_positive("--hausdorff", text); },
            "Measure how far the exact warp of --source is from FILE, to this error in pixels (slow)")->type_name("PX");
   add_read_options(*command, arguments->read);
-  command->add_flag("--strict", arguments->strict, "Exit with 3 when a warped file has cracks, flips or lost area");
+  command->add_flag("--strict", arguments->strict, "Exit with 3 when a warped file has cracks, flips or lost area; wants one with _SOURCE_POSITION (convert --source-attributes)");
   command->add_flag("--json", arguments->json, "Print the statistics as JSON");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
