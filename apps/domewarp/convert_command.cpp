@@ -16,6 +16,7 @@
 #include "domewarp/core/memory.h"
 #include "domewarp/core/parallel.h"
 #include "frames.h"
+#include "job_arguments.h"
 #include "options.h"
 #include "progress_bar.h"
 
@@ -131,7 +132,10 @@ void add_convert_command(CLI::App& app, int& status) {
          }, "Threads to use (default: all)")->type_name("N");
   command->add_flag("--json", arguments->json, "Print the report as JSON");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
-  command->callback([arguments, &status] { status = run(*arguments); });
+  command->callback([arguments, command, &status] {
+    require_use(given_arguments(*command));
+    status = run(*arguments);
+  });
 }
 
 } // namespace domewarp

@@ -70,7 +70,36 @@ void check_surface(const std::vector<JobArgument>& arguments, const JobOptions& 
   }
 }
 
+const JobArgument* find_given(const std::vector<JobArgument>& given, const std::string& name) {
+  const auto found = std::find_if(given.begin(), given.end(), [&](const JobArgument& argument) { return argument.name == name; });
+  return found == given.end() ? nullptr : &*found;
+}
+
+/// `name` works with option `of` only, where `value` is not null with that value of it.
+struct Need {
+  const char *name, *of, *value;
+};
+constexpr Need needs[] = {{"fov", "lens", nullptr},          {"profile-unit", "profile", nullptr},
+                          {"threshold", "subdivide", "isotropic"}, {"max-lod", "subdivide", "isotropic"},
+                          {"light-tolerance", "shading", "bake"},  {"exposure", "shading", "bake"}};
+
 } // namespace
+
+void require_use(const std::vector<JobArgument>& given) {
+  for (const Need& need : needs) {
+    if (find_given(given, need.name) == nullptr) continue;
+    const JobArgument* of = find_given(given, need.of);
+    if (of == nullptr || (need.value != nullptr && of->value != need.value))
+      throw Error(ErrorCode::usage, std::string("--") + need.name + ": needs --" + need.of + (need.value != nullptr ? std::string(" ") + need.value : ""));
+  }
+  const auto clash = [&](const char* name, const char* of, const char* value) {
+    const JobArgument* other = find_given(given, of);
+    if (find_given(given, name) != nullptr && other != nullptr && other->value != value)
+      throw Error(ErrorCode::usage, std::string("--") + name + ": contradicts --" + of + " " + other->value.value_or(""));
+  };
+  clash("unlit", "shading", "unlit");
+  clash("extension", "boundary", "tangent");
+}
 
 JobOptions parse_arguments(const std::vector<JobArgument>& arguments) {
   JobOptions job;

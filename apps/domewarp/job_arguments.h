@@ -16,6 +16,9 @@ namespace domewarp {
 ///         surface; the sentence alone when something is missing
 JobOptions parse_arguments(const std::vector<JobArgument>& arguments);
 
+/// @throws Error(usage) for an option given to `convert` that does nothing without another one, or that another one overrules
+void require_use(const std::vector<JobArgument>& given);
+
 /// Those options of a parsed command line that decide a conversion.
 std::vector<JobArgument> given_arguments(const CLI::App& command);
 

@@ -176,10 +176,16 @@ void add_no_skip_option(CLI::App& app, SkipOptions& skip) {
       ->trigger_on_parse();
 }
 
+constexpr double least_tolerance_px = 1e-4;
+
 void add_quality_options(CLI::App& app, RefineOptions& refine) {
   auto* group = app.add_option_group("Quality");
   add(*group, "--tolerance", "Largest displacement of any drawn point, pixels (default 0.5)", "PX",
-      [&refine](const std::string& text) { refine.tolerance_px = parse_positive("--tolerance", text); });
+      [&refine](const std::string& text) {
+        refine.tolerance_px = parse_positive("--tolerance", text);
+        if (refine.tolerance_px < least_tolerance_px)
+          throw Error(ErrorCode::usage, "--tolerance: must be at least 0.0001, which the single precision of the file resolves in 4096 rows, got " + text);
+      });
   add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.002)", "REL",
       [&refine](const std::string& text) { refine.depth_tolerance = parse_positive("--depth-tolerance", text); });
   add(*group, "--near", "Nothing nearer to the eye is drawn (default: 1e-5 of the scene's extent)", "D",

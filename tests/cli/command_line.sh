@@ -28,6 +28,7 @@ refuses 1 column convert "$scene" -o out.glb --curve 'r+'
 refuses 1 --curve convert "$scene" -o out.glb --curve 'log(-1)'
 refuses 1 --tolerance convert "$scene" -o out.glb --curve '1-r^2' --tolerance -1
 refuses 1 --tolerance convert "$scene" -o out.glb --curve '1-r^2' --tolerance=nan
+refuses 1 0.0001 convert "$scene" -o out.glb --curve '1-r^2' --tolerance 1e-300
 refuses 1 --size convert "$scene" -o out.glb --curve '1-r^2' --size 0x0
 refuses 1 --size convert "$scene" -o out.glb --curve '1-r^2' --size 99999999x9
 refuses 1 --eye convert "$scene" -o out.glb --curve '1-r^2' --eye a,b,c
@@ -46,6 +47,10 @@ refuses 1 "did you mean convert?" convrt "$scene"
 refuses 1 "did you mean --tolerance?" convert "$scene" -o out.glb --curve '1-r^2' --tolerence 1
 refuses 1 "one word too many" convert "$scene" another -o out.glb --curve '1-r^2'
 refuses 1 "functions are sqrt" convert "$scene" -o out.glb --curve '1-sqr(r)'
+refuses 1 "--fov: needs --lens" convert "$scene" -o out.glb --curve '1-r^2' --fov 200
+refuses 1 "--exposure: needs --shading bake" convert "$scene" -o out.glb --curve '1-r^2' --shading keep --exposure 1
+refuses 1 "--unlit: contradicts --shading bake" convert "$scene" -o out.glb --curve '1-r^2' --shading bake --unlit
+refuses 1 "--extension: contradicts --boundary clip" convert "$scene" -o out.glb --curve '1-r^2' --boundary clip --extension 5
 refuses 1 .svg curve --curve '1-r^2' --plot out.png
 refuses 1 --threads convert "$scene" -o out.glb --curve '1-r^2' --threads -1
 cp "$scene" in_scene.glb
