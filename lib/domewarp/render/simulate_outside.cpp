@@ -34,16 +34,31 @@ void add_triangle(Primitive& primitive, std::uint32_t a, std::uint32_t b, std::u
   primitive.indices.insert(primitive.indices.end(), {a, b, c});
 }
 
+/// Image radius at which the display is no longer drawn along a spoke: at the picture's end, at r_max, or where it has gone
+/// far away, as lenses near 360 degrees do behind the eye.
+double display_end(const Surface& surface, const Raster& raster, double angle) {
+  const double farthest = std::max(8 * glm::length(on_display(surface, 0, angle)), 4.0);
+  const auto is_near = [&](double radius) {
+    const Vec3 p = on_display(surface, radius, angle);
+    return glm::length(p) <= farthest && (radius == 0 || glm::length(p) > 0);
+  };
+  double low = 0, high = std::min(surface.r_max(), rectangle_end(raster, angle)) * (1 - 1e-9);
+  if (is_near(high)) return high;
+  for (int i = 0; i < 40; ++i) (is_near(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
 /// A grid of rings and spokes over the part of the picture that the display shows. Counter-clockwise from the eye.
 Primitive make_shell(const Surface& surface, const Raster& raster, double outwards, bool facing_eye, int material) {
   Primitive primitive;
   primitive.material = material;
   Attribute uv{"TEXCOORD_0", 2, {}};
+  std::vector<double> ends;
+  for (int i = 0; i < spokes; ++i) ends.push_back(display_end(surface, raster, 2 * std::numbers::pi * i / spokes));
   for (int j = 0; j <= rings; ++j)
     for (int i = 0; i < spokes; ++i) {
       const double angle = 2 * std::numbers::pi * i / spokes;
-      const double end = std::min(surface.r_max(), rectangle_end(raster, angle));
-      const double radius = end * std::min(double(j) / rings, 1 - 1e-9);
+      const double radius = ends[i] * j / rings;
       const Vec3 p = on_display(surface, radius, angle);
       const double length = glm::length(p);
       primitive.positions.push_back(Vec3f(length > 0 ? p * (1 + outwards / length) : p));
@@ -112,8 +127,7 @@ void add_beams(Primitive& bars, const Surface& surface, const Raster& raster, do
   const double distance = *surface.options().projector, corner = std::atan2(1.0, aspect(raster));
   const Vec3 projector(0, 0, distance);
   for (const double angle : {corner, std::numbers::pi - corner, std::numbers::pi + corner, -corner}) {
-    const double end = std::min(surface.r_max(), rectangle_end(raster, angle)) * (1 - 1e-9);
-    add_bar(bars, projector, on_display(surface, end, angle), thickness);
+    add_bar(bars, projector, on_display(surface, display_end(surface, raster, angle), angle), thickness);
   }
 }
 
