@@ -30,7 +30,6 @@ figure { margin: 0; } figcaption { margin: .4em 0; opacity: .8; }
 .slider .over { position: absolute; inset: 0; clip-path: inset(0 calc(100% - var(--at, 50%)) 0 0); }
 .slider .bar { position: absolute; top: 0; bottom: 0; left: var(--at, 50%); width: 2px; margin-left: -1px; background: #fff; box-shadow: 0 0 3px #000; }
 .slider input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; opacity: 0; cursor: ew-resize; }
-.tabs { display: flex; gap: .5em; flex-wrap: wrap; margin-bottom: .6em; }
 .key { display: inline-block; width: .9em; height: .9em; vertical-align: -1px; border: 1px solid var(--line); margin: 0 .3em 0 .9em; }
 )";
 

@@ -135,6 +135,31 @@ TEST_F(Compare, ATriangleThatIsDrawnTwiceIsAnOverlap) {
   EXPECT_GT(compare(warped).overlaps.value_or(0), 0u);
 }
 
+/// It fills what opens between the drawn courses of its sides, as it does in scenes that close T-junctions by such triangles.
+TEST_F(Compare, ATriangleWithoutAreaInTheSceneIsNoOverlap) {
+  Scene wall;
+  add(wall, make_quad({-1.5, -1, -1}, {3, 0, 0}, {0, 2, 0}, -1));
+  const Judge of_wall(wall, display);
+  CompareOptions options;
+  options.depth_bound = 0.1; // the coarse side is drawn pixels from its place
+  for (const float rise : {0.0f, 0.02f}) {
+    Primitive sliver;
+    sliver.positions = {{-0.5f, 0.5f, -1}, {0.5f, 0.5f, -1}, {0, 0.5f + rise, -1}};
+    sliver.indices = {0, 1, 2, 0, 2, 1};
+    Scene both = wall;
+    both.meshes[0].primitives.push_back(sliver);
+    Scene warped = prewarp(both, display, 64);
+    const Scene coarse = prewarp(both, display, 1);
+    const auto mesh_of = [](const Scene& scene) { return std::size_t(scene.instances[0].mesh); };
+    warped.meshes[mesh_of(warped)].primitives[1] = coarse.meshes[mesh_of(coarse)].primitives[1];
+    const std::size_t overlaps = of_wall(warped, options).overlaps.value_or(9999);
+    if (rise == 0)
+      EXPECT_EQ(overlaps, 0u);
+    else
+      EXPECT_GT(overlaps, 10u) << "one with area is";
+  }
+}
+
 TEST_F(Compare, ACrackBetweenUnequalNeighboursIsAPinhole) {
   // One half of a wall is cut finely, the other is not: its straight edge leaves the fine one's.
   Scene wall;

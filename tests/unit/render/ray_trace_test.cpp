@@ -2,6 +2,7 @@
 #include "domewarp/render/ray_trace.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 
 #include "domewarp/core/errors.h"
 #include "domewarp/core/parallel.h"
+#include "domewarp/scene/test_scenes.h"
 #include "render_scenes.h"
 
 namespace domewarp {
@@ -187,6 +189,25 @@ TEST(RayTrace, TexturesBlendingAndSamplesDoNotDependOnTheInstructionSet) {
   for (const std::string isa : {"avx2", "avx512"}) {
     options.embree = "isa=" + isa;
     EXPECT_TRUE(is_same(reference, trace(scene, display, options))) << isa;
+  }
+}
+
+/// DOMEWARP_ISA_ROWS=4096 traces pictures of that many rows.
+TEST(RayTrace, BundledScenesDoNotDependOnTheInstructionSet) {
+  const char* text = std::getenv("DOMEWARP_ISA_ROWS");
+  const int rows = text ? std::atoi(text) : 96;
+  for (const std::string curve : {"1-r^2", "3-sqrt(4+6*r^2)"}) {
+    const Display display = make_display(curve, rows, rows);
+    for (const TestScene& test : make_test_scenes()) {
+      RayTraceOptions options;
+      options.embree = "isa=sse4.2";
+      const View view = resolve_view(test.scene, {});
+      const Frame reference = ray_trace(test.scene, view, display.surface, display.raster, options);
+      for (const std::string isa : {"avx2", "avx512"}) {
+        options.embree = "isa=" + isa;
+        EXPECT_TRUE(is_same(reference, ray_trace(test.scene, view, display.surface, display.raster, options))) << test.name << ", " << isa;
+      }
+    }
   }
 }
 
