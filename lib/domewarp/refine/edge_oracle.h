@@ -92,7 +92,7 @@ public:
   template <typename... Points>
   bool is_well_inside(double longest2, const Points&... corner) const {
     const double low = std::min({corner.u...}), high = std::max({corner.u...}), nearest = std::min({corner.rho...});
-    return (... && (corner.sides == Sides{1, 1, 1})) && is_well_inside(longest2, low, high, nearest);
+    return (... && (corner.sides[0] + corner.sides[1] + corner.sides[2] == 3)) && is_well_inside(longest2, low, high, nearest);
   }
 
   /// Sides and image of a point. `on`: index of a boundary it is known to lie on, or -1.

@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::array<const MappedPoint*, 6>;
 
-/// The edges between a face's corners and split points; each is judged once, whatever patterns have it.
+/// The edges that patterns can have inside a face, three midlines and three medians; each is judged once, whatever patterns have it.
 class Diagonals {
 public:
   Diagonals(const Points& points, const EdgeOracle& oracle) : points_(points), oracle_(oracle) {}
@@ -33,10 +33,11 @@ public:
 
 private:
   const DiagonalBound& find(const std::array<std::uint8_t, 2>& ends) {
-    const unsigned low = std::min(ends[0], ends[1]), high = std::max(ends[0], ends[1]), bit = 1u << (6 * low + high);
-    DiagonalBound& bound = bound_[low][high];
-    if (known_ & bit) return bound;
-    known_ |= bit;
+    const unsigned low = std::min(ends[0], ends[1]), high = std::max(ends[0], ends[1]);
+    const unsigned slot = low < 3 ? low : low + high - 4; // a median by its corner; 3-4, 3-5, 4-5
+    DiagonalBound& bound = bound_[slot];
+    if (known_ >> slot & 1) return bound;
+    known_ |= 1u << slot;
     const MappedPoint *p = points_[low], *q = points_[high];
     if (precedes(q->eye, p->eye)) std::swap(p, q);
     return bound = oracle_.diagonal(*p, *q);
@@ -44,7 +45,7 @@ private:
 
   const Points& points_;
   const EdgeOracle& oracle_;
-  std::array<std::array<DiagonalBound, 6>, 5> bound_; ///< by the lower and the higher end, where known_
+  std::array<DiagonalBound, 6> bound_; ///< where known_
   unsigned known_ = 0;
 };
 

@@ -214,6 +214,31 @@ Cell make_cell(const ContinuedRadius& radius, double mean, double low, double hi
   return {smooth.d2r, q.across, q.twist, smooth.dr, q.factor, w.g, w.slope, smooth.jump, w.jump};
 }
 
+/// @param last angle where the cell ends, for what is scaled
+std::array<float, 8> brief_of(const Cell& cell, bool is_scaled, double last) {
+  const double half = std::cos(0.5 * last), root = is_scaled ? (1 + 1e-12) / half : 1, square = root * root; // secants
+  const double bend = std::max(magnitude(cell.along), magnitude(cell.across) * square), twist = magnitude(cell.twist) * square;
+  const bool jumps = cell.slope_jump > 0 || cell.weight_jump > 0;
+  return {rounded_up(jumps ? infinity : std::sqrt(bend * bend + twist * twist) * (1 + 1e-12)),
+          rounded_up(std::max(magnitude(cell.slope), magnitude(cell.factor) * root)),
+          rounded_up((1 + 1e-12) / cell.weight.lo),
+          rounded_up(-cell.weight_slope.lo),
+          rounded_up(cell.weight_slope.hi)};
+}
+
+/// Of the rows in levels[0].
+template <typename Row>
+void add_levels(std::vector<std::vector<Row>>& levels) {
+  const std::size_t cells = levels[0].size();
+  for (std::size_t span = 2; span <= cells; span *= 2) {
+    const std::vector<Row>& finer = levels.back();
+    std::vector<Row> level(cells - span + 1);
+    for (std::size_t i = 0; i < level.size(); ++i)
+      for (std::size_t k = 0; k < level[i].bound.size(); ++k) level[i].bound[k] = std::max(finer[i].bound[k], finer[i + span / 2].bound[k]);
+    levels.push_back(std::move(level));
+  }
+}
+
 const Cell unknown{entire(Regularity::unknown), {0}, {0}, {0}, {0}, {1}, {0}, 0, 0};
 
 } // namespace
@@ -228,7 +253,8 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
   const Branch& range = surface.branches()[branch];
   slope_jumps_.assign(cells + 1, 0);
   weight_jumps_.assign(cells + 1, 0);
-  std::vector<Row> base(cells);
+  levels_.emplace_back(cells);
+  brief_levels_.emplace_back(cells);
   parallel_each(cells, 8, [&](std::size_t i) {
     constexpr double rounding = 1e-13;
     const auto start_of = [&](std::size_t cell) {
@@ -250,9 +276,10 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     }
     const std::array<Interval, quantities> all{cell.along, cell.across, cell.twist, cell.slope, cell.factor, cell.weight, cell.weight_slope};
     for (int k = 0; k < quantities; ++k) {
-      base[i].bound[k] = rounded_up(-all[k].lo);
-      base[i].bound[half + k] = rounded_up(all[k].hi);
+      levels_[0][i].bound[k] = rounded_up(-all[k].lo);
+      levels_[0][i].bound[half + k] = rounded_up(all[k].hi);
     }
+    brief_levels_[0][i].bound = brief_of(cell, is_scaled_, last);
     slope_jumps_[i + 1] = cell.slope_jump;
     weight_jumps_[i + 1] = cell.weight_jump;
   });
@@ -261,20 +288,26 @@ RadialRanges::RadialRanges(const Surface& surface, std::size_t branch, double th
     weight_jumps_[i + 1] += weight_jumps_[i];
   }
   has_jumps_ = slope_jumps_.back() > 0 || weight_jumps_.back() > 0;
-  levels_.push_back(std::move(base));
-  for (std::size_t span = 2; span <= cells; span *= 2) {
-    const std::vector<Row>& finer = levels_.back();
-    std::vector<Row> level(cells - span + 1);
-    for (std::size_t i = 0; i < level.size(); ++i)
-      for (std::size_t k = 0; k < 2 * half; ++k) level[i].bound[k] = std::max(finer[i].bound[k], finer[i + span / 2].bound[k]);
-    levels_.push_back(std::move(level));
-  }
+  add_levels(levels_);
+  add_levels(brief_levels_);
+}
+
+RadialRanges::Cells RadialRanges::cells_of(double u_low, double u_high) const {
+  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp(margin + (u - u_low_) * scale_, 0.0, cells - 1.0)); };
+  const std::size_t first = cell(u_low), last = std::max(first, cell(u_high)); // rounding may have swapped them
+  return {first, last, static_cast<std::size_t>(std::bit_width(last - first + 1) - 1)};
+}
+
+BriefRange RadialRanges::brief(double u_low, double u_high) const {
+  const auto [first, last, level] = cells_of(u_low, u_high);
+  const std::vector<BriefRow>& rows = brief_levels_[level];
+  const BriefRow &left = rows[first], &right = rows[last + 1 - (std::size_t{1} << level)];
+  const auto most = [&](std::size_t k) { return static_cast<double>(std::max(left.bound[k], right.bound[k])); };
+  return {most(0), most(1), most(2), {-most(3), most(4)}};
 }
 
 RadialRange RadialRanges::over(double u_low, double u_high) const {
-  const auto cell = [&](double u) { return static_cast<std::size_t>(std::clamp(margin + (u - u_low_) * scale_, 0.0, cells - 1.0)); };
-  const std::size_t first = cell(u_low), last = std::max(first, cell(u_high)); // rounding may have swapped them
-  const std::size_t level = static_cast<std::size_t>(std::bit_width(last - first + 1) - 1);
+  const auto [first, last, level] = cells_of(u_low, u_high);
   const std::vector<Row>& rows = levels_[level];
   const Row &left = rows[first], &right = rows[last + 1 - (std::size_t{1} << level)];
   Row all;

@@ -32,18 +32,15 @@ EdgeBend ErrorBound::short_segments(const ShortSegments& s) const {
   const double angle = s.angle, margin = u_margin(angle);
   if (!(angle < infinity)) return unknown;
   const double u_low = std::max(0.0, s.u_low - margin), u_high = std::min(1.0, s.u_high + margin);
-  const RadialRange r = ranges_.over(u_low, u_high);
-  if (r.slope_jump > 0 || r.weight_jump > 0) return unknown;
-  const double bend = std::max(magnitude(r.along), magnitude(r.across)), twist = magnitude(r.twist);
-  const double speed = std::max(magnitude(r.slope), magnitude(r.factor));
+  const BriefRange r = ranges_.brief(u_low, u_high);
   const double change = s.weight_high - s.weight_low + s.weight_high * angle;
   EdgeBend bound;
-  bound.second = angle * (angle * s.weight_high * std::sqrt(bend * bend + twist * twist) + 2 * change * speed) * (1 + slack);
+  bound.second = angle * (angle * s.weight_high * r.bend + 2 * change * r.speed) * (1 + slack);
   bound.depth = 0.126 * angle * angle;
   if (projection_ == Projection::perspective) {
     const double turn = std::min(2.0, 1.01 * angle * std::max(std::abs(cotangent(u_low)), std::abs(cotangent(u_high))));
     const double range = 1.01 * (r.weight_slope.high - r.weight_slope.low) + magnitude(r.weight_slope) * (1.01 * turn + 0.26 * angle * angle);
-    bound.depth += (1 + bound.depth) * 0.25 * angle * range / r.weight.low;
+    bound.depth += (1 + bound.depth) * 0.25 * angle * range * r.inverse_weight;
   }
   return bound.second < infinity && bound.depth < infinity ? bound : unknown;
 }
