@@ -22,11 +22,10 @@ h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin: 2em 0 .5em; }
 table { border-collapse: collapse; } td, th { padding: .25em .9em .25em 0; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 td.figure { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.good { color: var(--good); } td.bad { color: var(--bad); font-weight: bold; }
-img { max-width: 100%; display: block; background: #000; }
+img { width: 100%; display: block; background: #000; }
 figure { margin: 0; } figcaption { margin: .4em 0; opacity: .8; }
 .curve svg { max-width: 100%; height: auto; background: #fff; }
 .slider { position: relative; line-height: 0; }
-.slider img { width: 100%; }
 .slider .over { position: absolute; inset: 0; clip-path: inset(0 calc(100% - var(--at, 50%)) 0 0); }
 .slider .bar { position: absolute; top: 0; bottom: 0; left: var(--at, 50%); width: 2px; margin-left: -1px; background: #fff; box-shadow: 0 0 3px #000; }
 .slider input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; opacity: 0; cursor: ew-resize; }
