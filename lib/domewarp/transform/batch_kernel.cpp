@@ -98,17 +98,18 @@ struct Fitness {
   }
 };
 
-// The larger of two numbers one of which is positive; by their bits, as integer units are less busy.
-HWY_INLINE V LargerNumber(V a, V b) {
-  const hn::RebindToSigned<Tag> d;
+// The lower of two numbers one of which is negative; by their bits, as integer units are less busy.
+HWY_INLINE V LowerNumber(V a, V b) {
+  const hn::RebindToUnsigned<Tag> d;
   return hn::BitCast(Tag(), hn::Max(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
 
 // What stage 1 leaves for stage 2.
 struct Place {
-  V r, u, depth;
-  V beyond;   // what divides x on the tangent extension
-  V finer;    // what u lacks, where that is found in double precision
+  V t;       // u scale; negative where R and not R / sin(theta) is tabulated
+  V inverse; // scale / rho, or scale / r there; negative beyond the rim: -scale / what divides x on the tangent extension
+  V depth;
+  V finer;   // what t lacks
 };
 
 // Half-angle: tan(theta / 2) = n / o.
@@ -132,59 +133,70 @@ HWY_INLINE V RoughInverse(V v) {
   return hn::BitCast(Tag(), hn::Sub(hn::Set(d, 0x7EF127EAU), hn::BitCast(d, v)));
 }
 
-// Halves of a vector in double precision; a scalar is both of its halves.
-#if HWY_TARGET == HWY_SCALAR
-using DoubleTag = hn::Rebind<double, Tag>;
-using W = hn::Vec<DoubleTag>;
-HWY_INLINE W Half(V v, bool) { return hn::PromoteTo(DoubleTag(), v); }
-HWY_INLINE V Join(W lower, W) { return hn::DemoteTo(Tag(), lower); }
+// What rounding took from `product` = a b.
+HWY_INLINE V RestOfProduct(V a, V b, V product) {
+#if HWY_NATIVE_FMA
+  return hn::MulSub(a, b, product);
 #else
-using DoubleTag = hn::Repartition<double, Tag>;
-using W = hn::Vec<DoubleTag>;
-HWY_INLINE W Half(V v, bool upper) {
-  const hn::Half<Tag> half;
-  return hn::PromoteTo(DoubleTag(), upper ? hn::UpperHalf(half, v) : hn::LowerHalf(half, v));
-}
-HWY_INLINE V Join(W lower, W upper) {
-  const hn::Half<Tag> half;
-  return hn::Combine(Tag(), hn::DemoteTo(half, upper), hn::DemoteTo(half, lower));
-}
-#endif
-
-// One step of Newton's in double precision from what single precision makes of a root, with 1 / root to 5 %, leaves a
-// twentieth of its rounding.
-HWY_INLINE W FineRoot(W square, W root) {
-  const hn::RebindToUnsigned<DoubleTag> bits;
-  const W half_inverse = hn::BitCast(DoubleTag(), hn::Sub(hn::Set(bits, 0x7FCE24FD40000000U), hn::BitCast(bits, root)));
-  return hn::MulAdd(hn::NegMulAdd(root, root, square), half_inverse, root);
-}
-
-// What is left of n - u (n + alpha o) in double precision, where single precision makes it 0.
-HWY_INLINE V Remainder(const V* p, const HalfAngle& half, V u, float alpha) {
-  const V r = hn::Max(half.r, Broadcast(0x1p-75F)); // has an inverse
-  const auto of_half = [&](bool upper) HWY_ATTR {
-    const W x = Half(p[0], upper), y = Half(p[1], upper), z = Half(p[2], upper);
-    const W square = hn::MulAdd(x, x, hn::Mul(y, y)), side = FineRoot(square, Half(r, upper));
-    const W a = hn::Add(FineRoot(hn::MulAdd(z, z, square), Half(half.depth, upper)), hn::Abs(z));
-    const W n = hn::IfNegativeThenElse(z, side, a), o = hn::IfNegativeThenElse(z, a, side);
-    return hn::NegMulAdd(Half(u, upper), hn::MulAdd(hn::Set(DoubleTag(), alpha), o, n), n);
+  const auto upper = [](V v) HWY_ATTR {
+    const V shifted = hn::Mul(v, Broadcast(4097));
+    return hn::Sub(shifted, hn::Sub(shifted, v));
   };
-  return Join(of_half(false), of_half(true));
+  const V a1 = upper(a), b1 = upper(b), a2 = hn::Sub(a, a1), b2 = hn::Sub(b, b1);
+  const V first = hn::Add(hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Mul(a1, b2)), hn::Mul(a2, b1));
+  return hn::Add(first, hn::Mul(a2, b2));
+#endif
+}
+
+// c - a b, where that is small beside c.
+HWY_INLINE V Remainder(V c, V a, V b) {
+#if HWY_NATIVE_FMA
+  return hn::NegMulAdd(a, b, c);
+#else
+  const V product = hn::Mul(a, b);
+  return hn::Sub(hn::Sub(c, product), RestOfProduct(a, b, product));
+#endif
+}
+
+// What rounding took from `sum` = a + b, of numbers that are not negative.
+HWY_INLINE V RestOfSum(V a, V b, V sum) { return hn::Sub(hn::Min(a, b), hn::Sub(sum, hn::Max(a, b))); }
+
+// What t = scale n / bottom, bottom = n + alpha o, lacks by the rounding of the squares, roots and sums before it: in pairs of
+// numbers, the second what rounding took from the first. alpha is a power of 2. Leaves a twentieth.
+HWY_INLINE V Finer(const V* p, const HalfAngle& half, V bottom, V t, V alpha, V scale) {
+  V square[3], rest[3];
+  for (int i = 0; i < 3; ++i) {
+    square[i] = hn::Mul(p[i], p[i]);
+    rest[i] = RestOfProduct(p[i], p[i], square[i]);
+  }
+  const V r2 = hn::Add(square[0], square[1]), d2 = hn::Add(r2, square[2]);
+  const V rest_r2 = hn::Add(hn::Add(rest[0], rest[1]), RestOfSum(square[0], square[1], r2));
+  const V rest_d2 = hn::Add(hn::Add(rest_r2, rest[2]), RestOfSum(r2, square[2], d2));
+  const auto rest_of_root = [](V root, V of, V rest_of) HWY_ATTR {
+    return hn::Mul(hn::Add(Remainder(of, root, root), rest_of), hn::Mul(Broadcast(0.5F), RoughInverse(root)));
+  };
+  const V rest_r = rest_of_root(half.r, r2, rest_r2), rest_d = rest_of_root(half.depth, d2, rest_d2);
+  const V forward = hn::Abs(p[2]), rest_a = hn::Add(rest_d, RestOfSum(half.depth, forward, hn::Add(half.depth, forward)));
+  const V rest_n = hn::IfNegativeThenElse(p[2], rest_r, rest_a), rest_o = hn::IfNegativeThenElse(p[2], rest_a, rest_r);
+  const V rest_bottom = hn::Add(hn::MulAdd(alpha, rest_o, rest_n), RestOfSum(half.n, hn::Mul(alpha, half.o), bottom));
+  const V top = hn::Mul(scale, half.n), rest_top = hn::MulAdd(scale, rest_n, RestOfProduct(scale, half.n, top));
+  const V left = hn::NegMulAdd(t, rest_bottom, hn::Add(Remainder(top, t, bottom), rest_top));
+  return hn::Mul(left, RoughInverse(bottom));
 }
 
 // Stage 1: where on the table a point is.
 struct Locator {
   Interleaving interleaving;
-  V alpha, beyond_z, beyond_r, u_blind, least;
-  float exact_alpha;
+  V alpha, scale, beyond_z, beyond_r, u_max, u_ahead, u_blind, least;
   Fitness fitness{};
 
   HWY_INLINE explicit Locator(const FloatTable& table)
-      : alpha(Broadcast(table.alpha)), beyond_z(Broadcast(table.beyond_z)), beyond_r(Broadcast(table.beyond_r)),
-        u_blind(Broadcast(table.u_blind)), least(Broadcast(1 / FloatTable::blind_radius)), exact_alpha(table.alpha) {}
+      : alpha(Broadcast(table.alpha)), scale(Broadcast(table.scale)), beyond_z(Broadcast(table.beyond_z)),
+        beyond_r(Broadcast(table.beyond_r)), u_max(Broadcast(table.u_max)), u_ahead(Broadcast(table.u_ahead)),
+        u_blind(Broadcast(table.u_blind)), least(Broadcast(-1 / FloatTable::blind_radius)) {}
 
   template <bool fine, bool behind, bool split>
-  HWY_INLINE void Run(const ConstPoints& in, std::size_t i, Place& place) {
+  HWY_INLINE void Run(const ConstPoints& in, std::size_t i, const Points& out, Place& place) {
     const Tag d;
     V p[3];
     if (split) {
@@ -196,14 +208,24 @@ struct Locator {
     }
     const HalfAngle half(p[0], p[1], p[2]);
     fitness.Add(half.o, half.d2);
-    const V bottom = hn::MulAdd(alpha, half.o, half.n), u = hn::Div(half.n, bottom);
-    const V nearest = hn::Mul(least, half.r);
-    const V line = hn::NegMulAdd(beyond_z, p[2], hn::Mul(beyond_r, half.r));
-    place.u = u;
-    place.depth = half.depth;
-    if (behind) place.r = half.r;
-    if (fine) place.finer = hn::Mul(Remainder(p, half, u, exact_alpha), RoughInverse(bottom));
-    place.beyond = LargerNumber(hn::IfThenElseZero(hn::Le(u, u_blind), line), nearest);
+    const V bottom = hn::MulAdd(alpha, half.o, half.n);
+    const V line = hn::MulSub(beyond_z, p[2], hn::Mul(beyond_r, half.r));
+    const Mask extended = hn::Le(half.n, hn::Mul(u_blind, bottom)), inside = hn::Le(half.n, hn::Mul(u_max, bottom));
+    const V beyond = LowerNumber(hn::IfThenElseZero(extended, line), hn::Mul(least, half.r));
+    V divisor = hn::IfThenElse(inside, half.depth, beyond);
+    Mask far;
+    if (behind) {
+      far = hn::And(inside, hn::Gt(half.n, hn::Mul(u_ahead, bottom)));
+      divisor = hn::IfThenElse(far, half.r, divisor);
+    }
+    const V inverse = hn::Div(scale, hn::Mul(divisor, bottom)); // one division for both
+    V t = hn::Mul(half.n, hn::Mul(divisor, inverse));
+    if (fine) place.finer = Finer(p, half, bottom, t, alpha, scale);
+    if (behind) t = hn::IfThenElse(far, hn::Neg(t), t);
+    place.t = t;
+    place.inverse = hn::Mul(bottom, inverse);
+    if (split) hn::StoreU(half.depth, d, out.z + i);
+    else place.depth = half.depth;
   }
 };
 
@@ -254,45 +276,49 @@ struct Coefficients {
   }
 };
 
-// Stage 2: the polynomials and the one division.
+// Stage 2: the polynomials.
 template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
 struct Finisher {
   Interleaving interleaving;
-  Coefficients<pieces, degree + 1> q, g;
-  V scale, u_max, g_beyond, last_ahead;
+  Coefficients<pieces, degree + 1> k, g;
+  V k_beyond, g_beyond, last_ahead;
 
   HWY_INLINE explicit Finisher(const FloatTable& table)
-      : q(table.q), g(perspective ? table.g : table.q), scale(Broadcast(table.scale)), u_max(Broadcast(table.u_max)),
-        g_beyond(Broadcast(table.g_beyond)), last_ahead(Broadcast(table.last_ahead)) {}
+      : k(table.k), g(perspective ? table.g : table.k), k_beyond(Broadcast(-1 / table.scale)), g_beyond(Broadcast(table.g_beyond)),
+        last_ahead(Broadcast(table.last_ahead)) {}
 
   HWY_INLINE void Run(const ConstPoints& in, const Place& place, std::size_t i, const Points& out) const {
     const Tag d;
-    const hn::RebindToSigned<Tag> di;
-    const V u = place.u, depth = place.depth;
-    const V magic = Broadcast(0x1.8p23F), shifted = hn::MulAdd(u, scale, magic), piece = hn::Sub(shifted, magic);
-    V x = hn::MulSub(u, scale, piece);
-    if (fine) x = hn::MulAdd(place.finer, scale, x);
-    const Indices index = hn::BitCast(di, shifted);
-    const Mask inside = hn::Le(u, u_max);
-    const V measure = behind ? hn::IfThenElse(hn::Gt(piece, last_ahead), place.r, depth) : depth;
-    const V divisor = hn::IfThenElse(inside, hn::Mul(measure, q.Evaluate(x, piece, index)), place.beyond);
-    V factor = hn::Div(Broadcast(1), divisor), z = depth;
+    const V magic = Broadcast(0x1.8p23F), t = behind ? hn::Abs(place.t) : place.t;
+    V shifted = hn::Add(t, magic);
+    if (behind) { // rounding must not take the wrong side's piece
+      const V last = hn::Add(last_ahead, magic);
+      shifted = hn::IfNegativeThenElse(place.t, hn::Max(shifted, hn::Add(last, Broadcast(1))), hn::Min(shifted, last));
+    }
+    const V piece = hn::Sub(shifted, magic);
+    V x = hn::Sub(t, piece);
+    if (fine) x = hn::Add(x, place.finer);
+    const Indices index = hn::BitCast(hn::RebindToSigned<Tag>(), shifted);
+    V factor = hn::Mul(place.inverse, hn::IfNegativeThenElse(place.inverse, k_beyond, k.Evaluate(x, piece, index)));
+    V z{};
+    if (!split) z = place.depth;
     if (perspective) {
-      const V w = hn::Mul(depth, hn::IfThenElse(inside, g.Evaluate(x, piece, index), g_beyond));
+      if (split) z = hn::LoadU(d, out.z + i);
+      const V w = hn::Mul(z, hn::IfNegativeThenElse(place.inverse, g_beyond, g.Evaluate(x, piece, index)));
       factor = hn::Mul(factor, w);
       z = hn::Neg(w);
     }
     if (split) {
       hn::StoreU(hn::Mul(hn::LoadU(d, in.x + i), factor), d, out.x + i);
       hn::StoreU(hn::Mul(hn::LoadU(d, in.y + i), factor), d, out.y + i);
-      hn::StoreU(z, d, out.z + i);
+      if (perspective) hn::StoreU(z, d, out.z + i);
     } else {
       interleaving.Store(in.x + 3 * i, factor, z, out.x + 3 * i);
     }
   }
 };
 
-// The second stage follows the first at a distance, so that the divisions and roots of one overlap the arithmetic of the
+// The second stage follows the first at a distance, so that the division and roots of one overlap the arithmetic of the
 // other.
 template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
 HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out) {
@@ -300,9 +326,9 @@ HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Poin
   const Finisher<pieces, degree, fine, behind, perspective, split> finisher(table);
   constexpr std::size_t lag = 6, vectors = batch_block / lanes;
   Place places[2 * lag];
-  for (std::size_t i = 0; i < lag; ++i) locator.template Run<fine, behind, split>(in, i * lanes, places[i]);
+  for (std::size_t i = 0; i < lag; ++i) locator.template Run<fine, behind, split>(in, i * lanes, out, places[i]);
   for (std::size_t i = lag; i < vectors; ++i) {
-    locator.template Run<fine, behind, split>(in, i * lanes, places[i % (2 * lag)]);
+    locator.template Run<fine, behind, split>(in, i * lanes, out, places[i % (2 * lag)]);
     finisher.Run(in, places[(i - lag) % (2 * lag)], (i - lag) * lanes, out);
   }
   for (std::size_t i = vectors - lag; i < vectors; ++i) finisher.Run(in, places[i % (2 * lag)], i * lanes, out);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int most_nodes = FloatTable::most_powers;
 constexpr double pi = std::numbers::pi;
-constexpr double behind_from = 1.75; // radians: Q is still far from 0 there
+constexpr double behind_from = 1.75; // radians: sin(theta) is still far from 0 there
 
 // The half-angle index and its inverse.
 struct Index {
@@ -98,6 +98,7 @@ public:
     FloatTable& table = fit_.table;
     constexpr float never = std::numeric_limits<float>::infinity();
     table.last_ahead = static_cast<float>(last_ahead_);
+    table.u_ahead = static_cast<float>((last_ahead_ + 0.5) / index_.scale);
     const double s = std::sin(branch_.theta_high), c = std::cos(branch_.theta_high);
     table.u_max = branch_.theta_high >= pi ? never : static_cast<float>(index_.u(s, c));
     extend(s, c);
@@ -109,7 +110,7 @@ private:
   double chebyshev_node(int i) const { return -std::cos(pi * (i + 0.5) / nodes_); }
 
   struct Sample {
-    double x, q, radius, u;
+    double x, k, s, radius, u; ///< k = R / s, s = sin(theta), or 1 far behind
   };
 
   // The rim is where the last piece ends, but for what rounding takes; a single kink falls on the edge of a piece.
@@ -138,7 +139,8 @@ private:
   Sample sample(int piece, double radius) const {
     const Vec2 way = *surface_.direction(std::min(radius, surface_.r_max())); // the end of a piece may round up
     const double u = index_.u(way.x, way.y);
-    return {u * index_.scale - piece, is_behind(piece) ? 1 / radius : way.x / radius, radius, u};
+    const double s = is_behind(piece) ? 1 : way.x;
+    return {u * index_.scale - piece, radius / s, s, radius, u};
   }
 
   bool fit_piece(int piece, double low, double high, double allowed) {
@@ -148,15 +150,15 @@ private:
     for (int i = 0; i < nodes_; ++i) {
       samples[i] = at(chebyshev_node(i));
       x[i] = samples[i].x;
-      y[i] = samples[i].q;
+      y[i] = samples[i].k;
       if (i > 0) condition_ = std::max(condition_, samples[i].u * (samples[i].radius - samples[i - 1].radius) / (samples[i].u - samples[i - 1].u));
     }
     pieces_.push_back(interpolate(x, y, nodes_));
-    for (int power = 0; power < most_nodes; ++power) fit_.table.q[power][piece] = static_cast<float>(pieces_.back()[power]);
+    for (int power = 0; power < most_nodes; ++power) fit_.table.k[power][piece] = static_cast<float>(pieces_.back()[power] / index_.scale);
     for (int i = 0; i <= nodes_; ++i) {
-      const double place = std::max(-std::cos(pi * i / nodes_), low == 0 ? -0.999 : -1.0); // Q is 0/0 on the axis
+      const double place = std::max(-std::cos(pi * i / nodes_), low == 0 ? -0.999 : -1.0); // K is 0/0 on the axis
       const Sample between = at(place);
-      const double error = between.radius * std::abs(evaluate(pieces_.back(), between.x) / between.q - 1);
+      const double error = between.s * std::abs(evaluate(pieces_.back(), between.x) - between.k);
       if (!(error <= allowed)) return false; // not a number either
       fit_.approximation = std::max(fit_.approximation, error);
     }
@@ -167,8 +169,8 @@ private:
   double radius_slope(int piece, double x) const {
     const double u = (piece + x) / index_.scale;
     const Vec2 way = index_.direction(u);
-    const double q = evaluate(pieces_[piece], x), dq = slope(pieces_[piece], x) * index_.scale / index_.theta_slope(u);
-    return is_behind(piece) ? -dq / (q * q) : (way.y - way.x * dq / q) / q;
+    const double k = evaluate(pieces_[piece], x), dk = slope(pieces_[piece], x) * index_.scale / index_.theta_slope(u);
+    return is_behind(piece) ? dk : k * way.y + dk * way.x;
   }
 
   void fit_weights() {

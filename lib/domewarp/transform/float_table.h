@@ -11,23 +11,24 @@ namespace domewarp {
 /// projector folded in, in single precision.
 ///
 /// Index: u = n / (n + alpha o) with tan(theta / 2) = n / o, analytic over all directions; piece round(u scale), position
-/// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x / (rho Q),
-/// Q = sin(theta) / R(theta). On the tangent line x' = x / (beyond_z z + beyond_r r), which is linear even with a
-/// projector, and a blind point is put at `blind_radius`.
+/// u scale - piece in [-1/2, 1/2], so that the first piece is half as wide as the others. Value: x' = x K / rho,
+/// K = R(theta) / sin(theta), so that one division, scale / (rho (n + alpha o)), leaves both u and x'. On the tangent line
+/// x' = x / (beyond_z z + beyond_r r), which is linear even with a projector, and a blind point is put at `blind_radius`.
 struct FloatTable {
   static constexpr int most_powers = 8, most_pieces = 32;
   static constexpr float blind_radius = 1e4F; ///< image units: no direction is drawn farther out
 
   /// 8 of degree 5 or 7, 16 or 32 of degree 5, or 32 of degree 7 where fine.
   int pieces = 16, degree = 5;
-  bool fine = false; ///< position in the piece in double precision
+  bool fine = false; ///< position in the piece in pairs of numbers; alpha is a power of 2
   float alpha = 1, scale = 1;
   float u_max = 0;      ///< beyond: tangent extension
-  float last_ahead = 0; ///< beyond that piece, Q is 1 / R and divides x / r: sin(theta) / R vanishes on the backward axis
+  float last_ahead = 0; ///< beyond that piece, R multiplies x / r: R / sin(theta) has no bound on the backward axis
+  float u_ahead = 0;    ///< where that piece ends
   float u_blind = 0;    ///< beyond: blind
   float beyond_z = 0, beyond_r = 0;
   float g_beyond = 1;
-  alignas(64) float q[most_powers][most_pieces]{}; ///< coefficients, highest power first; the first rows are empty below degree 7
+  alignas(64) float k[most_powers][most_pieces]{}; ///< of K / scale, highest power first; the first rows are empty below degree 7
   alignas(64) float g[most_powers][most_pieces]{}; ///< of the perspective output's weight
 
   bool reaches_behind() const { return u_max * scale > last_ahead + 0.5F; }
