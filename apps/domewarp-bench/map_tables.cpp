@@ -113,10 +113,10 @@ const std::vector<std::string>& map_curves() {
 
 Table float_tables(const Options& options) {
   Table table{"float_tables",
-              "Tables in single precision; error of visible directions, even ones and ones close to the axis and the rim",
+              "Tables in single precision; error of visible directions, even ones and ones close to the axis and the rim; they pay from the last column's number of points on",
               {{"curve", "curve"}, {"r_max", "r_max"}, {"method", "method"}, {"pieces", "pieces"}, {"build_ms", "build (ms)"},
                {"predicted_error", "predicted error"}, {"max_error", "max error"}, {"rms_error", "RMS error"}, {"px_4096", "max px at 4096"},
-               {"px_8192", "max px at 8192"}},
+               {"px_8192", "max px at 8192"}, {"pays_from", "pays from"}},
               {}};
   for (const std::string& curve : map_curves())
     for (const double r_max : {1.0, 5.0 / 3}) {
@@ -126,10 +126,14 @@ Table float_tables(const Options& options) {
       for (int round = 0; round < (options.quick ? 1 : 9); ++round) build = std::min(build, BatchMap(surface).report().build_ms);
       const BatchMap batch(surface);
       const BatchReport& report = batch.report();
-      const Error error = float_error(surface, batch, directions(surface.branches().front(), options.quick ? 200 : 50000));
+      const std::vector<Vec3> points = directions(surface.branches().front(), options.quick ? 200 : 50000);
+      const Error error = float_error(surface, batch, points);
+      const std::vector<Vec3> few(points.begin(), points.begin() + std::min<std::ptrdiff_t>(2000, static_cast<std::ptrdiff_t>(points.size())));
+      const double direct_ns = ns_per_point(surface, make_image_map(surface, Method::direct), few, options.quick ? 1 : 5);
       table.rows.push_back({curve, surface.r_max(), std::string(report.vectorised ? "float" : report.direct ? "direct" : "double"),
                             static_cast<double>(report.pieces), build, report.vectorised ? report.predicted_error : nothing, error.most,
-                            error.rms, pixels_4096 * error.most, 2 * pixels_4096 * error.most});
+                            error.rms, pixels_4096 * error.most, 2 * pixels_4096 * error.most,
+                            report.vectorised ? build * 1e6 / direct_ns : nothing});
     }
   return table;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "domewarp/profile/analysis.h"
+#include "domewarp/profile/half_angle.h"
 #include "domewarp/profile/root.h"
 #include "domewarp/profile/surface_parts.h"
 
@@ -29,11 +30,6 @@ Slopes slopes_at(const Jet<double>& f, double r) {
 bool is_steep(const Jet<double>& f) { return !(std::abs(f.d) < 1e6 && std::isfinite(f.dd)); }
 
 } // namespace
-
-double half_angle_index(double s, double c) {
-  const double a = 1 + std::abs(c);
-  return c >= 0 ? s / (s + a) : a / (a + s);
-}
 
 double compensate(double distance, double r, double z) {
   return std::isinf(distance) ? r : r * (distance / (z + distance));
@@ -106,7 +102,7 @@ Vec2 curve_point(const Curve& curve, const Span& span, double s, double c) {
     const Jet<double> f = differentiate(curve, r);
     return ValueAndSlope<double>{f.v * s - r * c, f.d * s - c};
   };
-  const double part = (half_angle_index(s, c) - span.index_at_low) / (span.index_at_high - span.index_at_low);
+  const double part = (half_angle_index(s, c, 1) - span.index_at_low) / (span.index_at_high - span.index_at_low);
   const double r = find_root(function, span.r_low, span.r_high, guess_radius(span, part), sign);
   // Near a vertical tangent f(r) would magnify the rounding of r; the ray knows z as well.
   return {r, s > 0 ? r * c / s : span.z_low};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "domewarp/profile/analysis.h"
+#include "domewarp/profile/half_angle.h"
 #include "domewarp/profile/refuse.h"
 #include "domewarp/profile/surface_parts.h"
 
@@ -109,8 +110,8 @@ Span make_span(const QuadPoint& low, const QuadPoint& high) {
   const auto rounded = [](const Quad& x) { return static_cast<double>(x); };
   Span span{rounded(low.r), rounded(high.r), rounded(low.z), rounded(high.z), angle_of(low), angle_of(high), 1, low, high};
   if (span.theta_at_high < span.theta_at_low) span.orientation = -1;
-  span.index_at_low = half_angle_index(std::sin(span.theta_at_low), std::cos(span.theta_at_low));
-  span.index_at_high = half_angle_index(std::sin(span.theta_at_high), std::cos(span.theta_at_high));
+  span.index_at_low = half_angle_index(std::sin(span.theta_at_low), std::cos(span.theta_at_low), 1);
+  span.index_at_high = half_angle_index(std::sin(span.theta_at_high), std::cos(span.theta_at_high), 1);
   return span;
 }
 

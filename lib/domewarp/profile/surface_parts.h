@@ -24,9 +24,6 @@ struct Span {
   std::vector<double> guesses{};
 };
 
-/// tan(theta / 2) mapped to [0, 1], for a direction with sine s and cosine c.
-double half_angle_index(double s, double c);
-
 /// What a Surface consists of.
 struct SurfaceParts {
   SurfaceOptions options;

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "domewarp/transform/radial_table.h"
+#include "domewarp/profile/half_angle.h"
 
 namespace domewarp {
 

@@ -16,9 +16,9 @@
 
 #include "domewarp/core/parallel.h"
 #include "domewarp/core/rounding.h"
+#include "domewarp/profile/half_angle.h"
 #include "domewarp/transform/continuation.h"
 #include "domewarp/transform/image_map.h"
-#include "domewarp/transform/radial_table.h"
 #include "domewarp/transform/weight.h"
 
 namespace domewarp {

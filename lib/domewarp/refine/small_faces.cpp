@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/profile/half_angle.h"
 #include "domewarp/refine/flips.h"
-#include "domewarp/transform/radial_table.h"
 
 namespace domewarp {
 

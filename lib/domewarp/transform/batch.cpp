@@ -162,7 +162,7 @@ struct BatchMap::Impl {
 BatchMap::BatchMap(const Surface& surface, const BatchOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   auto impl = std::make_unique<Impl>(Impl{surface});
-  const bool few = options.method == Method::automatic && options.points < table_pays_from;
+  const bool few = options.method == Method::automatic && options.points < float_table_pays_from;
   const bool direct = options.method == Method::direct || few;
   std::optional<FloatFit> fit;
   if (!direct) fit = make_float_table(surface, options.max_error);

@@ -85,13 +85,17 @@ struct Fitness {
   hn::Vec<Bits> least = hn::BitCast(Bits(), Broadcast(1)), most = hn::Zero(Bits());
 
   // As bits, which are ordered like positive numbers, with nan above them; integer units are less busy.
-  // @param divisor of the half-angle's tangent
-  HWY_INLINE void Add(V divisor, V d2) {
-    least = hn::Min(hn::BitCast(Bits(), divisor), least);
+  HWY_INLINE void Add(V z, V r, V d2) {
+    least = hn::Min(hn::BitCast(Bits(), FromBehind(z, r)), least);
     most = hn::Max(hn::BitCast(Bits(), d2), most);
   }
-  static HWY_INLINE Mask Holds(V divisor, V d2) {
-    return hn::And(hn::Ge(divisor, Broadcast(0x1p-50F)), hn::Le(d2, Broadcast(0x1p100F)));
+  // What is small beside the backward axis and the eye.
+  static HWY_INLINE V FromBehind(V z, V r) {
+    const hn::RebindToSigned<Tag> d;
+    return hn::BitCast(Tag(), hn::Max(hn::BitCast(d, hn::Neg(z)), hn::BitCast(d, r)));
+  }
+  static HWY_INLINE Mask Holds(V from_behind, V d2) {
+    return hn::And(hn::Ge(from_behind, Broadcast(0x1p-50F)), hn::Le(d2, Broadcast(0x1p100F)));
   }
   HWY_INLINE bool All() const {
     return hn::AllTrue(Tag(), Holds(hn::BitCast(Tag(), least), hn::BitCast(Tag(), most)));
@@ -104,23 +108,27 @@ HWY_INLINE V LowerNumber(V a, V b) {
   return hn::BitCast(Tag(), hn::Max(hn::BitCast(d, a), hn::BitCast(d, b)));
 }
 
-// What stage 1 leaves for stage 2.
+using Reach = FloatTable::Reach;
+
+// What the stages leave for the next.
 struct Place {
-  V t;       // u scale; negative where R and not R / sin(theta) is tabulated
-  V inverse; // scale / rho, or scale / r there; negative beyond the rim: -scale / what divides x on the tangent extension
+  V p[3];    // the point, where its layout hides it
+  V r;       // distance from the axis
+  V at;      // u, or u steps for the cosine
+  V inverse; // scale / what divides x; negative beyond the rim
   V depth;
-  V finer;   // what t lacks
+  V finer;   // what u steps lacks
 };
+
+// Adding it rounds to whole numbers, which are then the lowest bits.
+HWY_INLINE V Magic() { return Broadcast(0x1.8p23F); }
+HWY_INLINE V PieceOf(V shifted) { return hn::Sub(shifted, Magic()); }
 
 // Half-angle: tan(theta / 2) = n / o.
 struct HalfAngle {
-  V r, depth, n, o, d2;
+  V n, o;
 
-  HWY_INLINE HalfAngle(V x, V y, V z) {
-    const V r2 = hn::MulAdd(x, x, hn::Mul(y, y));
-    d2 = hn::MulAdd(z, z, r2);
-    r = hn::Sqrt(r2);
-    depth = hn::Sqrt(d2);
+  HWY_INLINE HalfAngle(V r, V z, V depth) {
     const V a = hn::Add(depth, hn::Abs(z));
     n = hn::IfNegativeThenElse(z, r, a);
     o = hn::IfNegativeThenElse(z, a, r);
@@ -161,9 +169,9 @@ HWY_INLINE V Remainder(V c, V a, V b) {
 // What rounding took from `sum` = a + b, of numbers that are not negative.
 HWY_INLINE V RestOfSum(V a, V b, V sum) { return hn::Sub(hn::Min(a, b), hn::Sub(sum, hn::Max(a, b))); }
 
-// What t = scale n / bottom, bottom = n + alpha o, lacks by the rounding of the squares, roots and sums before it: in pairs of
+// What u = n / bottom, bottom = n + alpha o, lacks by the rounding of the squares, roots and sums before it: in pairs of
 // numbers, the second what rounding took from the first. alpha is a power of 2. Leaves a twentieth.
-HWY_INLINE V Finer(const V* p, const HalfAngle& half, V bottom, V t, V alpha, V scale) {
+HWY_INLINE V Finer(const V* p, V r, V depth, const HalfAngle& half, V bottom, V u, V alpha) {
   V square[3], rest[3];
   for (int i = 0; i < 3; ++i) {
     square[i] = hn::Mul(p[i], p[i]);
@@ -175,28 +183,28 @@ HWY_INLINE V Finer(const V* p, const HalfAngle& half, V bottom, V t, V alpha, V 
   const auto rest_of_root = [](V root, V of, V rest_of) HWY_ATTR {
     return hn::Mul(hn::Add(Remainder(of, root, root), rest_of), hn::Mul(Broadcast(0.5F), RoughInverse(root)));
   };
-  const V rest_r = rest_of_root(half.r, r2, rest_r2), rest_d = rest_of_root(half.depth, d2, rest_d2);
-  const V forward = hn::Abs(p[2]), rest_a = hn::Add(rest_d, RestOfSum(half.depth, forward, hn::Add(half.depth, forward)));
+  const V rest_r = rest_of_root(r, r2, rest_r2), rest_d = rest_of_root(depth, d2, rest_d2);
+  const V forward = hn::Abs(p[2]), rest_a = hn::Add(rest_d, RestOfSum(depth, forward, hn::Add(depth, forward)));
   const V rest_n = hn::IfNegativeThenElse(p[2], rest_r, rest_a), rest_o = hn::IfNegativeThenElse(p[2], rest_a, rest_r);
   const V rest_bottom = hn::Add(hn::MulAdd(alpha, rest_o, rest_n), RestOfSum(half.n, hn::Mul(alpha, half.o), bottom));
-  const V top = hn::Mul(scale, half.n), rest_top = hn::MulAdd(scale, rest_n, RestOfProduct(scale, half.n, top));
-  const V left = hn::NegMulAdd(t, rest_bottom, hn::Add(Remainder(top, t, bottom), rest_top));
+  const V left = hn::NegMulAdd(u, rest_bottom, hn::Add(Remainder(half.n, u, bottom), rest_n));
   return hn::Mul(left, RoughInverse(bottom));
 }
 
-// Stage 1: where on the table a point is.
+// The first stages: lengths, then where on the table a point is.
 struct Locator {
   Interleaving interleaving;
-  V alpha, scale, beyond_z, beyond_r, u_max, u_ahead, u_blind, least;
+  V alpha, scale, beyond_z, beyond_r, u_max, u_blind, last_ahead, least;
+  bool line_ends;
   Fitness fitness{};
 
   HWY_INLINE explicit Locator(const FloatTable& table)
       : alpha(Broadcast(table.alpha)), scale(Broadcast(table.scale)), beyond_z(Broadcast(table.beyond_z)),
-        beyond_r(Broadcast(table.beyond_r)), u_max(Broadcast(table.u_max)), u_ahead(Broadcast(table.u_ahead)),
-        u_blind(Broadcast(table.u_blind)), least(Broadcast(-1 / FloatTable::blind_radius)) {}
+        beyond_r(Broadcast(table.beyond_r)), u_max(Broadcast(table.u_max)), u_blind(Broadcast(table.u_blind)),
+        last_ahead(Broadcast(table.last_ahead)), least(Broadcast(-1 / FloatTable::blind_radius)), line_ends(table.line_ends) {}
 
-  template <bool fine, bool behind, bool split>
-  HWY_INLINE void Run(const ConstPoints& in, std::size_t i, const Points& out, Place& place) {
+  template <bool fine, bool split>
+  HWY_INLINE void Measure(const ConstPoints& in, std::size_t i, const Points& out, Place& place) {
     const Tag d;
     V p[3];
     if (split) {
@@ -205,27 +213,49 @@ struct Locator {
       p[2] = hn::LoadU(d, in.z + i);
     } else {
       interleaving.Load(in.x + 3 * i, p);
+      for (int c = fine ? 0 : 2; c < 3; ++c) place.p[c] = p[c];
     }
-    const HalfAngle half(p[0], p[1], p[2]);
-    fitness.Add(half.o, half.d2);
-    const V bottom = hn::MulAdd(alpha, half.o, half.n);
-    const V line = hn::MulSub(beyond_z, p[2], hn::Mul(beyond_r, half.r));
-    const Mask extended = hn::Le(half.n, hn::Mul(u_blind, bottom)), inside = hn::Le(half.n, hn::Mul(u_max, bottom));
-    const V beyond = LowerNumber(hn::IfThenElseZero(extended, line), hn::Mul(least, half.r));
-    V divisor = hn::IfThenElse(inside, half.depth, beyond);
-    Mask far;
-    if (behind) {
-      far = hn::And(inside, hn::Gt(half.n, hn::Mul(u_ahead, bottom)));
-      divisor = hn::IfThenElse(far, half.r, divisor);
+    const V r2 = hn::MulAdd(p[0], p[0], hn::Mul(p[1], p[1])), d2 = hn::MulAdd(p[2], p[2], r2);
+    const V depth = hn::Sqrt(d2), r = hn::Sqrt(r2);
+    fitness.Add(p[2], r, d2);
+    place.r = r;
+    if (split) hn::StoreU(depth, d, out.z + i);
+    else place.depth = depth;
+  }
+
+  template <bool fine, Reach reach, bool split>
+  HWY_INLINE void Locate(const ConstPoints& in, std::size_t i, const Points& out, Place& place) const {
+    const Tag d;
+    V p[3];
+    if (split) {
+      p[0] = hn::LoadU(d, in.x + i);
+      p[1] = hn::LoadU(d, in.y + i);
+      p[2] = hn::LoadU(d, in.z + i);
+    } else {
+      for (int c = fine ? 0 : 2; c < 3; ++c) p[c] = place.p[c];
     }
-    const V inverse = hn::Div(scale, hn::Mul(divisor, bottom)); // one division for both
-    V t = hn::Mul(half.n, hn::Mul(divisor, inverse));
-    if (fine) place.finer = Finer(p, half, bottom, t, alpha, scale);
-    if (behind) t = hn::IfThenElse(far, hn::Neg(t), t);
-    place.t = t;
-    place.inverse = hn::Mul(bottom, inverse);
-    if (split) hn::StoreU(half.depth, d, out.z + i);
-    else place.depth = half.depth;
+    const V r = place.r, depth = split ? hn::LoadU(d, out.z + i) : place.depth;
+    if constexpr (reach == Reach::cosine) {
+      place.inverse = hn::Div(scale, Divisor<reach>(p[2], p[2], r, depth));
+      place.at = hn::MulAdd(p[2], place.inverse, scale);
+    } else {
+      const HalfAngle half(r, p[2], depth);
+      const V bottom = hn::MulAdd(alpha, half.o, half.n), u = hn::Div(half.n, bottom);
+      if (fine) place.finer = hn::Mul(Finer(p, r, depth, half, bottom, u, alpha), scale);
+      place.at = u;
+      place.inverse = hn::Div(scale, Divisor<reach>(u, p[2], r, depth));
+    }
+  }
+
+  // What divides x: rho up to the rim, or r where R is tabulated; beyond the rim what the tangent extension says, negated.
+  // @param at u, or z for the cosine
+  template <Reach reach>
+  HWY_INLINE V Divisor(V at, V z, V r, V depth) const {
+    const auto is_within = [&](V limit) HWY_ATTR { return hn::Le(at, reach == Reach::cosine ? hn::Mul(limit, depth) : limit); };
+    V line = hn::MulSub(beyond_z, z, hn::Mul(beyond_r, r));
+    if (line_ends) line = hn::IfThenElseZero(is_within(u_blind), line);
+    const V measure = reach == Reach::behind ? hn::IfThenElse(hn::Gt(PieceOf(hn::MulAdd(at, scale, Magic())), last_ahead), r, depth) : depth;
+    return hn::IfThenElse(is_within(u_max), measure, LowerNumber(line, hn::Mul(least, r)));
   }
 };
 
@@ -276,27 +306,21 @@ struct Coefficients {
   }
 };
 
-// Stage 2: the polynomials.
-template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
+// The last stage: the polynomials.
+template <int pieces, int degree, bool fine, Reach reach, bool perspective, bool split>
 struct Finisher {
   Interleaving interleaving;
   Coefficients<pieces, degree + 1> k, g;
-  V k_beyond, g_beyond, last_ahead;
+  V scale, k_beyond, g_beyond;
 
   HWY_INLINE explicit Finisher(const FloatTable& table)
-      : k(table.k), g(perspective ? table.g : table.k), k_beyond(Broadcast(-1 / table.scale)), g_beyond(Broadcast(table.g_beyond)),
-        last_ahead(Broadcast(table.last_ahead)) {}
+      : k(table.k), g(perspective ? table.g : table.k), scale(Broadcast(table.scale)), k_beyond(Broadcast(-1 / table.scale)),
+        g_beyond(Broadcast(table.g_beyond)) {}
 
   HWY_INLINE void Run(const ConstPoints& in, const Place& place, std::size_t i, const Points& out) const {
     const Tag d;
-    const V magic = Broadcast(0x1.8p23F), t = behind ? hn::Abs(place.t) : place.t;
-    V shifted = hn::Add(t, magic);
-    if (behind) { // rounding must not take the wrong side's piece
-      const V last = hn::Add(last_ahead, magic);
-      shifted = hn::IfNegativeThenElse(place.t, hn::Max(shifted, hn::Add(last, Broadcast(1))), hn::Min(shifted, last));
-    }
-    const V piece = hn::Sub(shifted, magic);
-    V x = hn::Sub(t, piece);
+    const V shifted = reach == Reach::cosine ? hn::Add(place.at, Magic()) : hn::MulAdd(place.at, scale, Magic()), piece = PieceOf(shifted);
+    V x = reach == Reach::cosine ? hn::Sub(place.at, piece) : hn::MulSub(place.at, scale, piece);
     if (fine) x = hn::Add(x, place.finer);
     const Indices index = hn::BitCast(hn::RebindToSigned<Tag>(), shifted);
     V factor = hn::Mul(place.inverse, hn::IfNegativeThenElse(place.inverse, k_beyond, k.Evaluate(x, piece, index)));
@@ -318,45 +342,52 @@ struct Finisher {
   }
 };
 
-// The second stage follows the first at a distance, so that the division and roots of one overlap the arithmetic of the
-// other.
-template <int pieces, int degree, bool fine, bool behind, bool perspective, bool split>
-HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints& in, const Points& out) {
+// Each stage follows the one before at a distance, so that the roots and the division of some points overlap the arithmetic
+// of others.
+template <int pieces, int degree, bool fine, Reach reach, bool perspective, bool split>
+HWY_NOINLINE bool Map(const FloatTable& table, const ConstPoints in, const Points out) {
   Locator locator(table);
-  const Finisher<pieces, degree, fine, behind, perspective, split> finisher(table);
-  constexpr std::size_t lag = 6, vectors = batch_block / lanes;
-  Place places[2 * lag];
-  for (std::size_t i = 0; i < lag; ++i) locator.template Run<fine, behind, split>(in, i * lanes, out, places[i]);
-  for (std::size_t i = lag; i < vectors; ++i) {
-    locator.template Run<fine, behind, split>(in, i * lanes, out, places[i % (2 * lag)]);
-    finisher.Run(in, places[(i - lag) % (2 * lag)], (i - lag) * lanes, out);
+  const Finisher<pieces, degree, fine, reach, perspective, split> finisher(table);
+  constexpr std::size_t ring = 16, lag = 4 * lanes;
+  Place places[ring];
+  const auto place = [&](std::size_t i) HWY_ATTR -> Place& { return places[i / lanes % ring]; };
+  for (std::size_t i = 0; i < batch_block + 2 * lag; i += lanes) {
+    if (i < batch_block) locator.template Measure<fine, split>(in, i, out, place(i));
+    if (i >= lag && i < batch_block + lag) locator.template Locate<fine, reach, split>(in, i - lag, out, place(i - lag));
+    if (i >= 2 * lag) finisher.Run(in, place(i - 2 * lag), i - 2 * lag, out);
   }
-  for (std::size_t i = vectors - lag; i < vectors; ++i) finisher.Run(in, places[i % (2 * lag)], i * lanes, out);
   return !locator.fitness.All();
 }
 
-template <int pieces, int degree, bool fine, bool behind, bool perspective>
-bool MapLayout(const FloatTable& table, const ConstPoints& in, const Points& out) {
-  return in.stride == 1 ? Map<pieces, degree, fine, behind, perspective, true>(table, in, out)
-                        : Map<pieces, degree, fine, behind, perspective, false>(table, in, out);
+template <int pieces, int degree, bool fine, Reach reach>
+bool MapOutput(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
+  const bool split = in.stride == 1;
+  if (output == BatchOutput::image)
+    return split ? Map<pieces, degree, fine, reach, false, true>(table, in, out)
+                 : Map<pieces, degree, fine, reach, false, false>(table, in, out);
+  return split ? Map<pieces, degree, fine, reach, true, true>(table, in, out)
+               : Map<pieces, degree, fine, reach, true, false>(table, in, out);
 }
 
-template <int pieces, int degree, bool fine>
+template <int pieces, int degree>
 bool MapWith(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
-  const bool behind = table.reaches_behind();
-  if (output == BatchOutput::image)
-    return behind ? MapLayout<pieces, degree, fine, true, false>(table, in, out)
-                  : MapLayout<pieces, degree, fine, false, false>(table, in, out);
-  return behind ? MapLayout<pieces, degree, fine, true, true>(table, in, out) : MapLayout<pieces, degree, fine, false, true>(table, in, out);
+  switch (table.reach) {
+  case Reach::cosine: return MapOutput<pieces, degree, false, Reach::cosine>(table, in, out, output);
+  case Reach::ahead: return MapOutput<pieces, degree, false, Reach::ahead>(table, in, out, output);
+  default: return MapOutput<pieces, degree, false, Reach::behind>(table, in, out, output);
+  }
 }
 
 bool MapInto(const FloatTable& table, const ConstPoints& in, const Points& out, BatchOutput output) {
-  if (table.fine) return MapWith<32, 7, true>(table, in, out, output);
-  if (table.degree == 7) return MapWith<8, 7, false>(table, in, out, output);
+  if (table.fine)
+    return table.reach == Reach::behind ? MapOutput<32, 7, true, Reach::behind>(table, in, out, output)
+                                        : MapOutput<32, 7, true, Reach::ahead>(table, in, out, output);
+  if (table.degree == 7)
+    return table.pieces == 8 ? MapWith<8, 7>(table, in, out, output) : MapWith<16, 7>(table, in, out, output);
   switch (table.pieces) {
-  case 8: return MapWith<8, 5, false>(table, in, out, output);
-  case 16: return MapWith<16, 5, false>(table, in, out, output);
-  default: return MapWith<32, 5, false>(table, in, out, output);
+  case 8: return MapWith<8, 5>(table, in, out, output);
+  case 16: return MapWith<16, 5>(table, in, out, output);
+  default: return MapWith<32, 5>(table, in, out, output);
   }
 }
 
@@ -389,8 +420,9 @@ void FindUnfit(const ConstPoints& in, std::uint8_t* flags) {
   const Tag d;
   HWY_ALIGN float marks[lanes];
   for (std::size_t i = 0; i < batch_block; i += lanes) {
-    const HalfAngle half(hn::LoadU(d, in.x + i), hn::LoadU(d, in.y + i), hn::LoadU(d, in.z + i));
-    hn::Store(hn::IfThenElse(Fitness::Holds(half.o, half.d2), hn::Zero(d), Broadcast(1)), d, marks);
+    const V x = hn::LoadU(d, in.x + i), y = hn::LoadU(d, in.y + i), z = hn::LoadU(d, in.z + i);
+    const V r2 = hn::MulAdd(x, x, hn::Mul(y, y)), d2 = hn::MulAdd(z, z, r2);
+    hn::Store(hn::IfThenElse(Fitness::Holds(Fitness::FromBehind(z, hn::Sqrt(r2)), d2), hn::Zero(d), Broadcast(1)), d, marks);
     for (std::size_t lane = 0; lane < lanes; ++lane) flags[i + lane] = marks[lane] != 0;
   }
 }

@@ -14,6 +14,7 @@ inline constexpr std::size_t batch_block = 1024;
 
 /// Maps a whole block; see BatchMap::map. Picks the widest instruction set at run time; those with fused
 /// multiply-add (AVX2, AVX-512) give the same bits.
+/// @param in, out `batch_block` points each, laid out alike: in.stride == out.stride
 /// @param streams writes past the caches
 /// @return whether some points are outside the range of single precision: their results are meaningless, and
 ///         `find_unfit` tells which they are

@@ -16,23 +16,32 @@ namespace {
 
 constexpr int most_nodes = FloatTable::most_powers;
 constexpr double pi = std::numbers::pi;
-constexpr double behind_from = 1.75; // radians: sin(theta) is still far from 0 there
+constexpr double behind_from = 2.6; // radians: sin(theta) is still far from 0 there
 
-// The half-angle index and its inverse.
+using Reach = FloatTable::Reach;
+
+constexpr double cosine_share = 0.6; // fewer roundings
+
+// The index and its inverse.
 struct Index {
-  double alpha, scale;
+  bool is_cosine;
+  double alpha;
+  double scale = 1; // steps
 
   double u(double s, double c) const {
+    if (is_cosine) return 0.5 * (1 - c);
     const double a = 1 + std::abs(c), n = c < 0 ? a : s, o = c < 0 ? s : a;
     return n / (n + alpha * o);
   }
   Vec2 direction(double u_value) const {
+    if (is_cosine) return {2 * std::sqrt(u_value * (1 - u_value)), 1 - 2 * u_value};
     const double n = alpha * u_value, o = 1 - u_value, square = n * n + o * o;
     return {2 * n * o / square, (o - n) * (o + n) / square};
   }
-  double theta_slope(double u_value) const {
+  double slope(double u_value) const { // du / dtheta
+    if (is_cosine) return std::sqrt(u_value * (1 - u_value));
     const double n = alpha * u_value, o = 1 - u_value;
-    return 2 * alpha / (n * n + o * o);
+    return 0.5 * (n * n + o * o) / alpha;
   }
 };
 
@@ -64,32 +73,44 @@ Piece interpolate(const Piece& x, Piece y, int nodes) {
   return lowest_first;
 }
 
+// What a table may be like.
+struct Shape {
+  Reach reach;
+  double alpha;
+  int pieces, degree;
+  bool fine = false;
+};
+
 class Fitter {
 public:
-  Fitter(const Surface& surface, double alpha, int pieces, int degree, bool fine)
-      : surface_(surface), branch_(surface.branches().front()), nodes_(degree + 1) {
-    index_ = {alpha, 1};
+  Fitter(const Surface& surface, const Shape& shape)
+      : surface_(surface), branch_(surface.branches().front()), nodes_(shape.degree + 1) {
+    const bool is_cosine = shape.reach == Reach::cosine;
+    index_ = {is_cosine, shape.alpha};
     u_end_ = branch_.theta_high >= pi ? 1 : index_.u(std::sin(branch_.theta_high), std::cos(branch_.theta_high));
-    fit_.table.pieces = pieces;
-    fit_.table.degree = degree;
-    fit_.table.fine = fine;
-    fit_.table.alpha = static_cast<float>(alpha);
-    fit_.table.scale = static_cast<float>(scale());
-    index_.scale = fit_.table.scale;
+    FloatTable& table = fit_.table;
+    table.pieces = shape.pieces;
+    table.degree = shape.degree;
+    table.fine = shape.fine;
+    table.reach = shape.reach;
+    table.alpha = static_cast<float>(shape.alpha);
+    table.scale = static_cast<float>(is_cosine ? 0.5 * scale() : scale());
+    index_.scale = is_cosine ? 2.0 * table.scale : table.scale;
     used_ = static_cast<int>(std::round(u_end_ * index_.scale)) + 1;
     last_ahead_ = std::round(index_.u(std::sin(behind_from), std::cos(behind_from)) * index_.scale);
   }
 
   /// False as soon as a piece is off by more than `allowed`.
   bool fit(double allowed) {
+    condition_ = condition_at_rim();
+    if (!(rounding() <= allowed)) return false;
     double low = 0;
     for (int k = 0; k < used_; ++k) {
       const double high = radius_at_edge(k + 1);
       if (!fit_piece(k, low, high, allowed)) return false;
       low = high;
     }
-    const double rounding = fit_.table.fine ? 3.6e-7 * branch_.radius_high : 1.2e-7 * condition_ + 3e-7 * branch_.radius_high;
-    fit_.predicted_error = fit_.approximation + rounding;
+    fit_.predicted_error = fit_.approximation + rounding();
     return fit_.predicted_error <= allowed;
   }
 
@@ -98,14 +119,16 @@ public:
     FloatTable& table = fit_.table;
     constexpr float never = std::numeric_limits<float>::infinity();
     table.last_ahead = static_cast<float>(last_ahead_);
-    table.u_ahead = static_cast<float>((last_ahead_ + 0.5) / index_.scale);
     const double s = std::sin(branch_.theta_high), c = std::cos(branch_.theta_high);
-    table.u_max = branch_.theta_high >= pi ? never : static_cast<float>(index_.u(s, c));
+    table.u_max = branch_.theta_high >= pi ? never : edge(s, c);
     extend(s, c);
     return fit_;
   }
 
 private:
+  // What the kernel compares with.
+  float edge(double s, double c) const { return static_cast<float>(index_.is_cosine ? -c : index_.u(s, c)); }
+
   // -1 to 1.
   double chebyshev_node(int i) const { return -std::cos(pi * (i + 0.5) / nodes_); }
 
@@ -127,7 +150,7 @@ private:
     return 0.5 / kink;
   }
 
-  bool is_behind(int piece) const { return piece > last_ahead_; }
+  bool is_behind(int piece) const { return fit_.table.reach == Reach::behind && piece > last_ahead_; }
 
   double radius_at_edge(int edge) const {
     if (edge == used_) return branch_.radius_high;
@@ -143,18 +166,40 @@ private:
     return {u * index_.scale - piece, radius / s, s, radius, u};
   }
 
+  double rounding() const {
+    return fit_.table.fine ? 3.6e-7 * branch_.radius_high : 1.2e-7 * condition_ + 3e-7 * branch_.radius_high;
+  }
+
+  // By what single precision's rounding of the index is multiplied.
+  double condition(const Sample& a, const Sample& b) const {
+    if (index_.is_cosine) return cosine_share * b.s * std::abs((b.k - a.k) / (b.u - a.u));
+    return b.u * (b.radius - a.radius) / (b.u - a.u);
+  }
+
+  // Where it is greatest as a rule.
+  double condition_at_rim() const {
+    const double s = std::sin(branch_.theta_high), c = std::cos(branch_.theta_high);
+    const RadialJet jet = surface_.radial(0, branch_.theta_high);
+    if (index_.is_cosine) return cosine_share * 2 * std::abs(jet.dr * s - jet.r * c) / (s * s);
+    return branch_.theta_high < pi ? u_end_ * jet.dr / index_.slope(u_end_) : 0;
+  }
+
   bool fit_piece(int piece, double low, double high, double allowed) {
-    const auto at = [&](double x) { return sample(piece, low + 0.5 * (high - low) * (1 + x)); };
+    const auto at = [&](double x) {
+      const double part = 0.5 * (1 + x);
+      // R grows with the root of 1 - cos(theta)
+      return sample(piece, index_.is_cosine ? std::sqrt(low * low + (high * high - low * low) * part) : low + (high - low) * part);
+    };
     std::array<Sample, most_nodes> samples;
     Piece x{}, y{};
     for (int i = 0; i < nodes_; ++i) {
       samples[i] = at(chebyshev_node(i));
       x[i] = samples[i].x;
       y[i] = samples[i].k;
-      if (i > 0) condition_ = std::max(condition_, samples[i].u * (samples[i].radius - samples[i - 1].radius) / (samples[i].u - samples[i - 1].u));
+      if (i > 0) condition_ = std::max(condition_, condition(samples[i - 1], samples[i]));
     }
     pieces_.push_back(interpolate(x, y, nodes_));
-    for (int power = 0; power < most_nodes; ++power) fit_.table.k[power][piece] = static_cast<float>(pieces_.back()[power] / index_.scale);
+    for (int power = 0; power < most_nodes; ++power) fit_.table.k[power][piece] = static_cast<float>(pieces_.back()[power] / fit_.table.scale);
     for (int i = 0; i <= nodes_; ++i) {
       const double place = std::max(-std::cos(pi * i / nodes_), low == 0 ? -0.999 : -1.0); // K is 0/0 on the axis
       const Sample between = at(place);
@@ -169,7 +214,7 @@ private:
   double radius_slope(int piece, double x) const {
     const double u = (piece + x) / index_.scale;
     const Vec2 way = index_.direction(u);
-    const double k = evaluate(pieces_[piece], x), dk = slope(pieces_[piece], x) * index_.scale / index_.theta_slope(u);
+    const double k = evaluate(pieces_[piece], x), dk = slope(pieces_[piece], x) * index_.scale * index_.slope(u);
     return is_behind(piece) ? dk : k * way.y + dk * way.x;
   }
 
@@ -202,12 +247,16 @@ private:
     constexpr double narrow = 1e-6;
     if (!radius || blind_from - branch_.theta_high < narrow) {
       table.u_blind = table.u_max;
+      table.line_ends = false;
       return;
     }
     const double right = s / branch_.radius_high, right2 = s2 / *radius, determinant = c * s2 - c2 * s;
     table.beyond_z = static_cast<float>((right * s2 - right2 * s) / determinant);
     table.beyond_r = static_cast<float>((c * right2 - c2 * right) / determinant);
-    table.u_blind = static_cast<float>(index_.u(std::sin(blind_from), std::cos(blind_from)));
+    const double blind_sine = std::sin(blind_from), blind_cosine = std::cos(blind_from);
+    table.u_blind = edge(blind_sine, blind_cosine);
+    // The line is a sinusoid of theta, which falls beyond its zero.
+    table.line_ends = table.beyond_r * blind_sine + table.beyond_z * blind_cosine > 0.5 * blind_sine / FloatTable::blind_radius;
   }
 
   const Surface& surface_;
@@ -220,6 +269,14 @@ private:
   std::vector<Piece> pieces_;
 };
 
+// Nothing where it is off by more than is allowed.
+std::optional<FloatFit> try_fit(const Surface& surface, const Shape& shape, double allowed, double weight_error) {
+  Fitter fitter(surface, shape);
+  if (!fitter.fit(allowed)) return std::nullopt;
+  const FloatFit fit = fitter.finish();
+  return fit.weight_error <= weight_error ? std::optional(fit) : std::nullopt;
+}
+
 } // namespace
 
 std::optional<FloatFit> make_float_table(const Surface& surface, double max_error) {
@@ -228,24 +285,26 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
   if (branches.size() != 1 || first.theta_low != 0 || first.orientation < 0 || first.fold_high) return std::nullopt;
   constexpr double fine_weight = 2.5e-3, usable_weight = 0.05; // any smooth positive weight draws the same picture
   constexpr double aim = 0.2;             // of what is allowed: look no further
+  const Reach reach = first.theta_high > behind_from ? Reach::behind : Reach::ahead;
   constexpr struct {
+    bool is_cosine;
     int pieces, degree;
-  } sizes[] = {{8, 5}, {8, 7}, {16, 5}, {32, 5}}; // the faster first
-  for (const auto [pieces, degree] : sizes)
+  } sizes[] = {{true, 8, 5}, {true, 16, 5}, {false, 8, 5}, {true, 16, 7}, {false, 8, 7}, {false, 16, 5}, {false, 16, 7}, {false, 32, 5}}; // the faster first
+  for (const auto [is_cosine, pieces, degree] : sizes) {
+    if (is_cosine && reach == Reach::behind) continue;
     for (const double alpha : {1.0, 4.0, 0.5, 2.0, 16.0, 0.25}) {
-      Fitter fitter(surface, alpha, pieces, degree, false);
-      if (!fitter.fit(aim * max_error)) continue;
-      const FloatFit fit = fitter.finish();
-      if (fit.weight_error <= (pieces < FloatTable::most_pieces ? fine_weight : usable_weight)) return fit;
+      const Shape shape{is_cosine ? Reach::cosine : reach, alpha, pieces, degree};
+      const auto fit = try_fit(surface, shape, aim * max_error, pieces < FloatTable::most_pieces ? fine_weight : usable_weight);
+      if (fit) return fit;
+      if (is_cosine) break; // has no alpha
     }
+  }
   std::optional<FloatFit> best;
   for (const double alpha : {16.0, 4.0, 1.0, 64.0}) {
-    Fitter fitter(surface, alpha, FloatTable::most_pieces, FloatTable::most_powers - 1, true);
-    if (!fitter.fit(best ? best->predicted_error : max_error)) continue;
-    const FloatFit fit = fitter.finish();
-    if (fit.weight_error > usable_weight) continue;
-    best = fit;
-    if (best->predicted_error <= aim * max_error) return best;
+    const Shape shape{reach, alpha, FloatTable::most_pieces, FloatTable::most_powers - 1, true};
+    const auto fit = try_fit(surface, shape, best ? best->predicted_error : max_error, usable_weight);
+    if (fit) best = fit;
+    if (best && best->predicted_error <= aim * max_error) return best;
   }
   return best;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "domewarp/profile/half_angle.h"
 #include "domewarp/profile/surface.h"
 
 namespace domewarp {
@@ -38,12 +39,6 @@ struct RadialTable {
   double max_error = 0;             ///< of R, measured between the nodes; infinite where no table was tried
   bool qualifies = false;           ///< max_error is within what a table is allowed
 };
-
-/// u for a direction; s = sin(theta), c = cos(theta) or any positive multiple of both, `length` their hypotenuse.
-inline double half_angle_index(double s, double c, double length) {
-  const double a = length + (c < 0 ? -c : c);
-  return c < 0 ? a / (a + s) : s / (s + a);
-}
 
 struct TableValue {
   double ratio = 0; ///< R / u

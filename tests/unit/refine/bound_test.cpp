@@ -11,7 +11,7 @@
 
 #include "domewarp/mesh/weld.h"
 #include "domewarp/refine/edge_oracle.h"
-#include "domewarp/transform/radial_table.h"
+#include "domewarp/profile/half_angle.h"
 #include "shapes.h"
 
 namespace domewarp {

@@ -277,10 +277,10 @@ TEST_F(Batch, SurfacesWithoutATableAreMappedOneByOne) {
   options.max_error = 1e-7; // finer than single precision
   EXPECT_FALSE(BatchMap(curve_surface("1-r^2"), options).report().vectorised);
   options = {};
-  options.points = table_pays_from - 1;
+  options.points = float_table_pays_from - 1;
   const BatchReport few = BatchMap(curve_surface("1-r^2"), options).report();
   EXPECT_TRUE(!few.vectorised && few.direct && few.reason == TableReason::few_points);
-  options.points = table_pays_from;
+  options.points = float_table_pays_from;
   EXPECT_TRUE(BatchMap(curve_surface("1-r^2"), options).report().vectorised);
 }
 
