@@ -135,10 +135,10 @@ struct HalfAngle {
   }
 };
 
-// 1 / v to 5 %, of positive v.
-HWY_INLINE V RoughInverse(V v) {
+// 2^power / v to 5 %, of positive v.
+HWY_INLINE V RoughInverse(V v, int power = 0) {
   const hn::RebindToUnsigned<Tag> d;
-  return hn::BitCast(Tag(), hn::Sub(hn::Set(d, 0x7EF127EAU), hn::BitCast(d, v)));
+  return hn::BitCast(Tag(), hn::Sub(hn::Set(d, 0x7EF127EAU + (static_cast<unsigned>(power) << 23)), hn::BitCast(d, v)));
 }
 
 // What rounding took from `product` = a b.
@@ -181,7 +181,7 @@ HWY_INLINE V Finer(const V* p, V r, V depth, const HalfAngle& half, V bottom, V 
   const V rest_r2 = hn::Add(hn::Add(rest[0], rest[1]), RestOfSum(square[0], square[1], r2));
   const V rest_d2 = hn::Add(hn::Add(rest_r2, rest[2]), RestOfSum(r2, square[2], d2));
   const auto rest_of_root = [](V root, V of, V rest_of) HWY_ATTR {
-    return hn::Mul(hn::Add(Remainder(of, root, root), rest_of), hn::Mul(Broadcast(0.5F), RoughInverse(root)));
+    return hn::Mul(hn::Add(Remainder(of, root, root), rest_of), RoughInverse(root, -1));
   };
   const V rest_r = rest_of_root(r, r2, rest_r2), rest_d = rest_of_root(depth, d2, rest_d2);
   const V forward = hn::Abs(p[2]), rest_a = hn::Add(rest_d, RestOfSum(depth, forward, hn::Add(depth, forward)));
