@@ -105,7 +105,8 @@ void add_batches(std::vector<Way>& ways, const BatchMap& map, Cloud& in, Cloud& 
   if (hwy::SupportedTargets() & HWY_AVX2) sets.emplace_back("AVX2", HWY_AVX2);
   if (sets.empty()) sets.emplace_back("widest", 0);
   for (const auto& [name, targets] : sets) {
-    ways.push_back({"floor: two roots, a division, " + name, 0, [&in, &out] { map_floor(in.split(), out.split(), in.count()); }, true, false, targets});
+    const auto floor = [&in, &out] { map_floor(in.split(), out.split(), in.count()); };
+    ways.push_back({"floor: two roots, a division, " + name, 0, floor, true, false, targets});
     ways.push_back({"float table, " + name, bytes, batch_work(map, in, out, true, BatchOutput::image), true, true, targets});
     ways.push_back({"float table, interleaved, " + name, bytes, batch_work(map, in, out, false, BatchOutput::image), false, true, targets});
     ways.push_back({"float table, perspective, " + name, 2 * bytes, batch_work(map, in, out, true, BatchOutput::perspective), true, false, targets});

@@ -289,7 +289,8 @@ std::optional<FloatFit> make_float_table(const Surface& surface, double max_erro
   constexpr struct {
     bool is_cosine;
     int pieces, degree;
-  } sizes[] = {{true, 8, 5}, {true, 16, 5}, {false, 8, 5}, {true, 16, 7}, {false, 8, 7}, {false, 16, 5}, {false, 16, 7}, {false, 32, 5}}; // the faster first
+  } sizes[] = {{true, 8, 5}, {true, 16, 5}, {false, 8, 5}, {true, 16, 7}, // the faster first
+               {false, 8, 7}, {false, 16, 5}, {false, 16, 7}, {false, 32, 5}};
   for (const auto [is_cosine, pieces, degree] : sizes) {
     if (is_cosine && reach == Reach::behind) continue;
     for (const double alpha : {1.0, 4.0, 0.5, 2.0, 16.0, 0.25}) {
