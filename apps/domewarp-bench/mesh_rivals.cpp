@@ -138,7 +138,7 @@ Table sweep_tolerances(const Options& options) {
                {"uniform", "uniform"}, {"uniform_ms", "ms"}, {"uniform_reached", "reached"},
                {"orthographic_error_px", "error px"}, {"orthographic", "orthographic"}, {"orthographic_ms", "ms"}, {"lower_bound", "N*"}},
               {}};
-  const auto& [name, surface] = surfaces()[1];
+  const auto [name, surface] = surfaces()[1];
   const Display display = make_display(name, surface, raster);
   const auto adapt = [&](double tolerance, Projection projection) {
     RefineOptions refine;

@@ -50,10 +50,10 @@ ThesisTable make_thesis_table(const Curve& curve, double r_max) {
 }
 
 void map_by_thesis_table(const ThesisTable& table, const ConstPoints& in, const Points& out, std::size_t count) {
-  constexpr float quarter = static_cast<float>(0.5 * std::numbers::pi), per_step = static_cast<float>(1 / step);
+  constexpr float quarter = static_cast<float>(0.5 * std::numbers::pi), per_step = static_cast<float>(1 / step), half = 0.5F;
   const std::size_t last = table.radii.size() - 1;
   map_all(in, out, count, [&](float slope) {
-    const auto index = static_cast<std::size_t>((std::atan(slope) + quarter) * per_step + 0.5F);
+    const auto index = static_cast<std::size_t>((std::atan(slope) + quarter) * per_step + half);
     return table.radii[std::min(index, last)];
   });
 }

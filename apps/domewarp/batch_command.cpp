@@ -94,8 +94,8 @@ int run(const Arguments& arguments, const std::vector<JobArgument>& given) {
 void add_batch_command(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("batch", "Convert many scenes: files, folders, or a JSON manifest with options per scene.");
   auto arguments = std::make_shared<Arguments>();
-  const auto add_text = [&](const char* name, const char* help, const char* type, std::function<void(const std::string&)> take) {
-    return command->add_option_function<std::string>(name, std::move(take), help)->type_name(type);
+  const auto add_text = [&](const char* name, const char* help, const char* type, const std::function<void(const std::string&)>& take) {
+    return command->add_option_function<std::string>(name, take, help)->type_name(type);
   };
   command->add_option("IN", arguments->inputs, "Scenes, folders of scenes, manifests (.json)")->required();
   command->add_option("--out", arguments->batch.out, "Folder to write to; a folder's structure is kept")->required()->type_name("DIR");

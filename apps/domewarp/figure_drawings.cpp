@@ -127,7 +127,8 @@ Pixels contact_sheet(const std::vector<Figure>& figures, int columns, int width)
   Canvas canvas(columns * (width + gap) + gap, rows * cell + gap, paper);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const Pixels& p = figures[i].pixels;
-    const double left = gap + static_cast<double>(i % std::size_t(columns)) * (width + gap), top = gap + static_cast<double>(i / std::size_t(columns)) * cell;
+    const std::size_t column = i % std::size_t(columns), row = i / std::size_t(columns);
+    const double left = gap + static_cast<double>(column) * (width + gap), top = gap + static_cast<double>(row) * cell;
     const double scale = std::min(double(width) / p.width, double(height) / p.height), w = p.width * scale, h = p.height * scale;
     canvas.rectangle(left, top, width, height, {20, 20, 24});
     canvas.picture(p, left + 0.5 * (width - w), top + 0.5 * (height - h), w, h);

@@ -32,7 +32,7 @@ const CLI::Option* find_option(const CLI::App& app, const std::string& name) {
 bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
 /// What CLI11 or we say of "--name", without the name.
-std::string without_name(std::string message, const std::string& name) {
+std::string without_name(const std::string& message, const std::string& name) {
   const std::string prefix = "--" + name + ": ";
   return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
 }

@@ -71,8 +71,8 @@ Raster parse_size(const std::string& option, const std::string& text) {
 
 /// An option whose text is turned into a value while the line is parsed.
 CLI::Option* add(CLI::App& app, const char* name, const std::string& help, const char* type,
-                 std::function<void(const std::string&)> take) {
-  return app.add_option_function<std::string>(name, std::move(take), help)->type_name(type);
+                 const std::function<void(const std::string&)>& take) {
+  return app.add_option_function<std::string>(name, take, help)->type_name(type);
 }
 
 template <typename Value>

@@ -124,7 +124,7 @@ class SceneWriter {
   }
 
   /// A node for a world matrix; one that shears or flattens takes two, of which the inner one carries `content`.
-  void add_node(const std::string& name, const Mat4& world, json content) {
+  void add_node(const std::string& name, const Mat4& world, const json& content) {
     json node = json::object();
     if (!name.empty()) node["name"] = name;
     roots_.push_back(nodes_.size());

@@ -9,7 +9,7 @@ namespace domewarp::gltf {
 Mat4 matrix_of(const std::vector<double>& values) {
   Mat4 matrix;
   for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) matrix[column][row] = values[static_cast<std::size_t>(4 * column + row)];
+    for (int row = 0; row < 4; ++row) matrix[column][row] = values[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)];
   // Products of float32 matrices leave rounding in the last row, which is (0, 0, 0, 1) by definition.
   for (int column = 0; column < 4; ++column) {
     const double exact = column == 3 ? 1 : 0;

@@ -140,7 +140,7 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri, bool allow_
   if (has_scheme(text)) fail("is not a relative path");
   if (allow_external) return folder / *decoded;
   if (!stays_inside(*decoded)) fail("leaves the folder of the file");
-  const fs::path path = folder / *decoded;
+  fs::path path = folder / *decoded;
   if (!lies_within(real_path(path), real_path(folder))) fail("leaves the folder of the file through a link");
   return path;
 }

@@ -78,7 +78,7 @@ class ImagePaths {
     const Image& image = scene_.images[index];
     const std::optional<std::string> kept = percent_decode(image.uri);
     if (kept && may_keep_path(target_.parent_path(), *kept, image) && taken_.insert(*kept).second) return *kept;
-    const std::string path =
+    std::string path =
         target_.stem().string() + ".image" + std::to_string(index) + "." + file_extension(image.mime);
     taken_.insert(path);
     return path;

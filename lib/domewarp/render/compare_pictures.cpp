@@ -80,7 +80,8 @@ void draw_rings(Canvas& canvas, int width, std::size_t pixels, const Ink& ink, M
   std::size_t drawn = 0;
   for (std::size_t i = 0; i < pixels && drawn < most; ++i) {
     if (!marked(i)) continue;
-    const Vec2 centre(double(i % std::size_t(width)) + 0.5, double(i / std::size_t(width)) + 0.5);
+    const std::size_t column = i % std::size_t(width), row = i / std::size_t(width);
+    const Vec2 centre(double(column) + 0.5, double(row) + 0.5);
     canvas.ring(centre, radius, ink, std::max(1.0, radius / 8));
     ++drawn;
   }

@@ -21,9 +21,10 @@ constexpr int strip = 64; ///< rows of windows that are worked on at once
 using Weights = std::array<double, window>;
 
 Weights gaussian(double sigma) {
+  constexpr int half = window / 2;
   Weights weights{};
   for (int i = 0; i < window; ++i)
-    weights[std::size_t(i)] = std::exp(-0.5 * (i - window / 2) * (i - window / 2) / (sigma * sigma));
+    weights[std::size_t(i)] = std::exp(-0.5 * (i - half) * (i - half) / (sigma * sigma));
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   for (double& w : weights) w /= sum;
   return weights;

@@ -159,7 +159,7 @@ Parts prepare_parts(const Scene& scene) {
     for (const Primitive& primitive : mesh.primitives) check_indices(primitive);
   for_each_primitive(
       scene, [&](std::size_t i, const Instance& instance, const Primitive& primitive, std::uint32_t first) {
-        Part part = make_part(primitive, result.looks[std::size_t(std::max(primitive.material, -1) + 1)]);
+        Part part = make_part(primitive, result.looks[std::size_t(std::max(primitive.material + 1, 0))]);
         part.world = instance.world;
         part.object = static_cast<std::uint32_t>(i + 1);
         part.first_triangle = first;

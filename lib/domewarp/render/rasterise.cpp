@@ -130,7 +130,7 @@ void draw_tile(const Job& job, const Tile& tile, Frame& frame, int top) {
     target.read(scale * tile.width, scale * tile.height);
   };
   draw(job.colours, n);
-  const std::size_t stride = std::size_t(n * tile.width), width = std::size_t(tile.width);
+  const std::size_t stride = std::size_t(n) * std::size_t(tile.width), width = std::size_t(tile.width);
   for_each_pixel(frame, top, tile, [&](std::size_t pixel, std::size_t x, std::size_t y) {
     store_colour(frame, pixel, mean(job.colours.colour, stride, x, y, n), job.options);
   });

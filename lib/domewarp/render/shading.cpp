@@ -186,7 +186,7 @@ std::array<std::uint8_t, 4> resolve_pixel(const Vec4& light, const std::array<st
   if (!(sum.a > 0)) return {0, 0, 0, 0};
   std::array<std::uint8_t, 4> pixel{};
   for (int i = 0; i < 3; ++i) pixel[std::size_t(i)] = srgb_of_linear(sum[i] / sum.a);
-  pixel[3] = static_cast<std::uint8_t>(std::min(sum.a, 1.0) * 255 + 0.5);
+  pixel[3] = static_cast<std::uint8_t>(std::lround(std::min(sum.a, 1.0) * 255));
   return pixel;
 }
 

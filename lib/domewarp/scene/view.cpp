@@ -2,7 +2,6 @@
 #include "domewarp/scene/view.h"
 
 #include <algorithm>
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
