@@ -85,16 +85,46 @@ bool is_certain(const SurfaceParts& parts, const Vec2& point, double s, double c
 
 } // namespace
 
+namespace {
+
+// A direction by its sine and cosine, and where it meets the branch.
+struct Meeting {
+  double s, c;
+  Vec2 point{0, 0};
+};
+
+Meeting meet_curve(const SurfaceParts& parts, std::size_t branch, const Vec3& p) {
+  const double side = std::hypot(p.x, p.y), length = std::hypot(side, p.z);
+  Meeting meeting{side / length, -p.z / length};
+  if (!parts.lens) meeting.point = curve_point(parts.curve, parts.spans[branch], meeting.s, meeting.c);
+  return meeting;
+}
+
+double settled_radius(const SurfaceParts& parts, std::size_t branch, const Vec3& p, const Meeting& meeting) {
+  const auto [s, c, point] = meeting;
+  if (is_certain(parts, point, s, c)) return compensate(parts.distance, point.x, point.y);
+  const Span& span = parts.spans[branch];
+  const QuadPoint exact = meet(parts.curve, span.low, span.high, span.orientation, about_axis(p), point.x);
+  if (std::isinf(parts.distance)) return static_cast<double>(exact.r);
+  return static_cast<double>(exact.r * parts.distance / (exact.z + parts.distance));
+}
+
+} // namespace
+
 double Surface::radius(std::size_t branch, const Vec3& p) const {
-  const double side = std::hypot(p.x, p.y), length = std::hypot(side, p.z), s = side / length, c = -p.z / length;
-  if (parts_->lens) return radius(branch, s, c);
-  const Span& span = parts_->spans[branch];
-  const Vec2 point = curve_point(parts_->curve, span, s, c);
-  if (is_certain(*parts_, point, s, c)) return compensate(parts_->distance, point.x, point.y);
-  const QuadPoint exact =
-      meet(parts_->curve, span.low, span.high, span.orientation, about_axis(p), point.x);
-  if (std::isinf(parts_->distance)) return static_cast<double>(exact.r);
-  return static_cast<double>(exact.r * parts_->distance / (exact.z + parts_->distance));
+  const Meeting meeting = meet_curve(*parts_, branch, p);
+  return parts_->lens ? radius(branch, meeting.s, meeting.c) : settled_radius(*parts_, branch, p, meeting);
+}
+
+RadialJet Surface::radial(std::size_t branch, const Vec3& p) const {
+  const Branch& range = parts_->branches[branch];
+  const Meeting meeting = meet_curve(*parts_, branch, p);
+  const double theta = std::clamp(std::atan2(meeting.s, meeting.c), range.theta_low, range.theta_high);
+  const MeridianJet meridian = parts_->lens ? lens_meridian(*parts_->lens, theta)
+                                            : curve_meridian(parts_->curve, parts_->spans[branch], theta, meeting.point);
+  RadialJet jet = compensate(parts_->distance, meridian);
+  jet.r = parts_->lens ? radius(branch, meeting.s, meeting.c) : settled_radius(*parts_, branch, p, meeting);
+  return jet;
 }
 
 bool Surface::shows(std::size_t branch, const Vec3& p) const {

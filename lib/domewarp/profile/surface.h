@@ -117,6 +117,9 @@ public:
   /// R, R', R'' at theta, clamped to the branch. Infinite slopes (fold) come back as the largest finite value.
   RadialJet radial(std::size_t branch, double theta) const;
 
+  /// The same for an eye-space point, finite and not zero, with the R of radius(branch, p): one root for all three.
+  RadialJet radial(std::size_t branch, const Vec3& p) const;
+
   /// Enclosures over [theta_low, theta_high], clamped to the branch: R' and R'' contain the one-sided derivatives at kinks.
   RadialEnclosure enclose(std::size_t branch, double theta_low, double theta_high) const;
 

@@ -87,8 +87,8 @@ struct BranchMap::Impl {
 
   Values values(const Polar& p, double u) const {
     if (!report.used) {
-      const RadialJet jet = surface.radial(index, std::atan2(p.r, p.z));
-      return {direct_radius(p), weight(jet.dr, mean)};
+      const RadialJet jet = surface.radial(index, Vec3(p.x, p.y, -p.z));
+      return {p.r < smallest_sine * p.rho ? direct_radius(p) : jet.r, weight(jet.dr, mean)};
     }
     const TableValue value = look_up(table, u);
     return {value.fine ? std::clamp(value.ratio * u, least, most) : direct_radius(p), value.g};
