@@ -27,8 +27,9 @@ struct Reached {
 
 /// Whether some side of the face is seen under more than the angle that makes it large.
 bool is_large(const Soup& soup, const SoupFace& face) {
+  const Triangle point = points_of(soup, face);
   for (int k = 0; k < 3; ++k) {
-    const Vec3 a = soup.points[face.point[k]], b = soup.points[face.point[(k + 1) % 3]];
+    const Vec3 a = soup.points[point[k]], b = soup.points[point[(k + 1) % 3]];
     if (glm::dot(a, b) < std::cos(large_angle) * glm::length(a) * glm::length(b)) return true;
   }
   return false;

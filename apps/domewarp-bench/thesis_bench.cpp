@@ -62,7 +62,7 @@ Vertices vertices_of(const Scene& scene) {
   Vertices vertices;
   for (int axis = 0; axis < 3; ++axis)
     for (const SoupFace& face : soup.faces)
-      for (const std::uint32_t point : face.point) vertices.in.push_back(static_cast<float>(soup.points[point][axis]));
+      for (const std::uint32_t point : points_of(soup, face)) vertices.in.push_back(static_cast<float>(soup.points[point][axis]));
   vertices.out.resize(vertices.in.size());
   return vertices;
 }

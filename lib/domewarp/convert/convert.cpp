@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/convert/convert.h"
 
+#include <algorithm>
 #include <chrono>
 #include <numbers>
 #include <optional>
@@ -85,7 +86,12 @@ void note_extension(const ConvertOptions& options, const Display& display, Conve
 
 std::size_t expected_points(const Scene& scene, const ConvertOptions& options) {
   constexpr std::size_t per_vertex = 10;
-  return count_vertices(scene) * (options.refine.subdivision == Subdivision::none ? 1 : per_vertex);
+  if (options.refine.subdivision == Subdivision::none) return count_vertices(scene);
+  const std::size_t refined = per_vertex * count_vertices(scene);
+  if (options.refine.subdivision == Subdivision::isotropic || count_triangles(scene) == 0 || !(options.refine.tolerance_px > 0)) return refined;
+  // However few its vertices: the error of an edge grows with its length squared, so covering the view takes about as
+  // many pieces as there are tolerances in the picture's height.
+  return std::max(refined, static_cast<std::size_t>(std::min(options.raster.height / options.refine.tolerance_px, 1e6)));
 }
 
 Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& report, const Progress& progress) {
@@ -99,13 +105,17 @@ Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& 
   return warped;
 }
 
-Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report,
-              const Progress& progress) {
+namespace {
+
+/// @param owned the scene itself, where its geometry may be freed once it is no longer needed; else null
+Scene convert_scene(const Scene& scene, Scene* owned, const ConvertOptions& options, const Display& display, ConvertReport& report,
+                    const Progress& progress) {
   check_raster(options.raster);
   check_shading(options);
   const Clock::time_point start = Clock::now();
   report.warnings = scene.warnings;
   report.dropped_extensions = scene.dropped_extensions;
+  report.dropped_extras = scene.dropped_extras;
   report.view = resolve_view(scene, options.view);
   note_display(display, report);
   note_extension(options, display, report);
@@ -124,8 +134,12 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
     refine_options.is_hidden = [&seen, margin](const Vec2& low, const Vec2& high, double nearest) { return seen->is_hidden(low, high, margin, nearest); };
     tell(progress, "refine");
   }
+  const auto refine_only = [&](auto&& from) {
+    return refine(std::forward<decltype(from)>(from), report.view, display.surface, display.map, options.raster, refine_options, report.refine);
+  };
   Scene warped = options.shading == Shading::bake ? refine_and_bake(scene, options, display, std::move(refine_options), report)
-                                                  : refine(scene, report.view, display.surface, display.map, options.raster, refine_options, report.refine);
+                 : owned != nullptr               ? refine_only(std::move(*owned))
+                                                  : refine_only(scene);
   warn_of_lines(options.refine, report);
   if (options.shading == Shading::unlit)
     for (Material& material : warped.materials) material.unlit = true;
@@ -134,6 +148,16 @@ Scene convert(const Scene& scene, const ConvertOptions& options, const Display& 
   report.peak_memory_mb = static_cast<double>(peak_memory()) / (1 << 20);
   warped.extras = to_json(make_record(options, report));
   return warped;
+}
+
+} // namespace
+
+Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report, const Progress& progress) {
+  return convert_scene(scene, nullptr, options, display, report, progress);
+}
+
+Scene convert(Scene&& scene, const ConvertOptions& options, const Display& display, ConvertReport& report, const Progress& progress) {
+  return convert_scene(scene, &scene, options, display, report, progress);
 }
 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {

@@ -33,7 +33,7 @@ struct ConvertOptions {
 };
 
 /// How many points mapping the scene takes at least, about: what Method::automatic goes by. Refinement evaluates the map
-/// at 3 to 50 points for each vertex of the source (the bundled scenes; a box whose sides fill the view).
+/// at 3 to 50 points for each vertex of the source (the bundled scenes), and a closed box of eight vertices at thousands.
 std::size_t expected_points(const Scene& scene, const ConvertOptions& options);
 
 /// What a conversion did; `to_json` (report.h) is its written form.
@@ -51,6 +51,7 @@ struct ConvertReport {
   std::size_t expected_points = 0; ///< what Method::automatic went by
   std::vector<std::string> warnings;
   std::vector<std::string> dropped_extensions;
+  std::vector<std::string> dropped_extras; ///< "cameras", "skins", ...: whose extras are not carried over
   double packing_px = 0;        ///< how far rounding in the written file moves a vertex at most (packing_error.h)
   BakeReport baked;             ///< of Shading::bake
   double map_ms = 0;
@@ -67,6 +68,9 @@ Scene convert(const Scene& scene, const ConvertOptions& options, ConvertReport& 
 /// The same with a display that was made before, of the same surface, raster and method.
 Scene convert(const Scene& scene, const ConvertOptions& options, const Display& display, ConvertReport& report,
               const Progress& progress = {});
+
+/// The same in less memory: frees the positions and indices of the scene's triangles on the way, unless light is baked.
+Scene convert(Scene&& scene, const ConvertOptions& options, const Display& display, ConvertReport& report, const Progress& progress = {});
 
 /// Whether the promise of the tolerance was kept.
 bool is_kept(const ConvertReport& report, const ConvertOptions& options);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "domewarp/convert/job.h"
 
+#include <chrono>
+#include <utility>
+
 #include "domewarp/convert/packing_error.h"
 #include "domewarp/core/errors.h"
 #include "domewarp/core/files.h"
@@ -37,15 +40,16 @@ ConvertReport run_job(const std::filesystem::path& input, const std::filesystem:
   report.output = output.string();
   report.animation = options.read.animation;
   report.time = options.read.time;
-  Scene warped;
-  if (displays != nullptr) {
-    const auto display = displays->find(options.convert.surface, options.convert.raster, options.convert.method,
-                                        expected_points(scene, options.convert));
-    warped = convert(scene, options.convert, *display, report, progress);
-  } else {
-    warped = convert(scene, options.convert, report, progress);
-  }
-  const bool lights_dropped = !scene.lights.empty() && warped.lights.empty();
+  DisplayCache own;
+  const auto start = std::chrono::steady_clock::now();
+  const auto display = (displays != nullptr ? *displays : own)
+                           .find(options.convert.surface, options.convert.raster, options.convert.method, expected_points(scene, options.convert));
+  const double map_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const bool had_lights = !scene.lights.empty();
+  Scene warped = convert(std::move(scene), options.convert, *display, report, progress);
+  report.map_ms = map_ms;
+  report.total_ms += map_ms;
+  const bool lights_dropped = had_lights && warped.lights.empty();
   scene = {};
   for (const std::string& name : drop_geometric_extensions(warped)) report.dropped_extensions.push_back(name);
   if (lights_dropped) report.dropped_extensions.push_back("KHR_lights_punctual");

@@ -12,14 +12,15 @@ std::string mib(double bytes) { return std::to_string(std::llround(std::ceil(byt
 } // namespace
 
 double estimate_memory(const FileSurvey& survey, const ConvertOptions& options) {
-  // Measured by the smallest RLIMIT_DATA that three scenes of 5,000 to 115,000 triangles are converted in, none of them split:
-  // the file and its decoded attributes are held once each while reading; then come welding, topology, the refined mesh and
-  // the written file. Embree takes its threads' stacks, triangles and a tree.
-  constexpr double program = 32 << 20, bytes_per_triangle = 250;
-  constexpr double ray_tracer = 110 << 20, bytes_per_ray_triangle = 230;
+  // Measured by the smallest RLIMIT_DATA that scenes are converted in, none of their triangles split: the file and its decoded
+  // attributes are held once each while reading; then come welding, the mapped points and the written file (132 MiB for 10^6
+  // triangles that share their vertices). Embree takes its threads' stacks, triangles and a tree. Textures are unpacked to
+  // four bytes a pixel.
+  constexpr double program = 32 << 20, bytes_per_triangle = 50;
+  constexpr double ray_tracer = 110 << 20, bytes_per_ray_triangle = 230, bytes_per_pixel = 4;
   const double plain = program + survey.file_bytes + survey.decoded_bytes + bytes_per_triangle * survey.drawn_triangles;
   const bool traces_rays = options.shading == Shading::bake || options.cull_hidden;
-  return traces_rays ? plain + ray_tracer + bytes_per_ray_triangle * survey.drawn_triangles : plain;
+  return traces_rays ? plain + ray_tracer + bytes_per_ray_triangle * survey.drawn_triangles + bytes_per_pixel * survey.texture_pixels : plain;
 }
 
 std::string memory_refusal(double estimate, std::uint64_t max_memory) {

@@ -9,8 +9,7 @@
 
 namespace domewarp {
 
-/// Bytes that a conversion will need at least, from what the file says of itself. Refinement may take more, and so do
-/// textures that rays look at.
+/// Bytes that a conversion will need at least, from what the file says of itself. Refinement may take more.
 double estimate_memory(const FileSurvey& survey, const ConvertOptions& options);
 
 /// Why a conversion that needs so many bytes is refused; empty when it fits.

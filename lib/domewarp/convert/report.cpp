@@ -142,6 +142,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["limits_hit"] = refine.limits_hit;
   json["warnings"] = report.warnings;
   json["dropped_extensions"] = report.dropped_extensions;
+  json["dropped_extras"] = report.dropped_extras;
   json["version"] = DOMEWARP_VERSION;
   if (!report.input.empty()) json["files"] = {{"input", report.input}, {"output", report.output}};
   if (!report.animation.empty()) json["pose"] = {{"animation", report.animation}, {"time_s", report.time}};

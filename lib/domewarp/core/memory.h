@@ -20,4 +20,10 @@ void keep_free_memory();
 /// Gives memory that was freed back to the system.
 void release_free_memory();
 
+/// Gives a vector's memory back; `vector = {}` and clear() keep it.
+template <typename Vector>
+void free_vector(Vector& vector) {
+  Vector().swap(vector);
+}
+
 } // namespace domewarp

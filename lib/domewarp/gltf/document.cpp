@@ -11,6 +11,7 @@
 #include "domewarp/gltf/buffers.h"
 #include "domewarp/gltf/container.h"
 #include "domewarp/gltf/extensions.h"
+#include "domewarp/gltf/extras.h"
 #include "domewarp/gltf/lean_json.h"
 #include "domewarp/gltf/materials.h"
 #include "domewarp/gltf/meshopt.h"
@@ -123,6 +124,7 @@ Document read_document(const std::filesystem::path& path, const ReadOptions& opt
   document.quantization_required = is_required(root, "KHR_mesh_quantization");
   document.scene.lights = read_lights(root, document.scene.warnings);
   read_extensions(root, document);
+  read_extras(root, document);
   check_views(document, sizes);
   decode_meshopt(document, budget);
   finish_images(root, document, budget);

@@ -75,12 +75,14 @@ struct PrimitiveSource {
   std::vector<AttributeMap> targets;
   int draco_view = -1; ///< -1: not compressed
   AttributeMap draco_attributes;
+  std::string extras; ///< JSON text, empty when absent; so below
 };
 
 struct MeshSource {
   std::string name;
   std::vector<PrimitiveSource> primitives;
   std::vector<double> weights;
+  std::string extras = {};
 };
 
 struct NodeSource {
@@ -93,6 +95,7 @@ struct NodeSource {
   std::vector<int> children;
   std::vector<double> weights;
   AttributeMap instancing; ///< EXT_mesh_gpu_instancing, empty when absent
+  std::string extras;
 };
 
 struct SkinSource {
@@ -103,6 +106,7 @@ struct SkinSource {
 struct SceneSource {
   std::string name;
   std::vector<int> nodes;
+  std::string extras = {};
 };
 
 enum class Interpolation { linear, step, cubic };

@@ -104,9 +104,14 @@ class SceneWriter {
     return size;
   }
 
+  static void add_extras(json& object, const std::string& extras) {
+    if (!extras.empty()) object["extras"] = json::parse(extras);
+  }
+
   json asset() const {
     json asset = {{"version", "2.0"}, {"generator", "domewarp " DOMEWARP_VERSION}};
     if (!scene_.copyright.empty()) asset["copyright"] = scene_.copyright;
+    add_extras(asset, scene_.asset_extras);
     if (!scene_.extras.empty()) asset["extras"]["domewarp"] = json::parse(scene_.extras);
     return asset;
   }
@@ -116,6 +121,8 @@ class SceneWriter {
     json scene = json::object();
     if (!scene_.name.empty()) scene["name"] = scene_.name;
     if (!roots_.empty()) scene["nodes"] = roots_;
+    add_extras(scene, scene_.scene_extras);
+    add_extras(root, scene_.root_extras);
     root["scenes"] = json::array({scene});
     if (!nodes_.empty()) root["nodes"] = nodes_;
     if (!meshes_.empty()) root["meshes"] = meshes_;
@@ -166,7 +173,9 @@ class SceneWriter {
     if (packing_ == Packing::quantized)
       world = world * Mat4(Vec4(grid_step(grid_), 0, 0, 0), Vec4(0, grid_step(grid_), 0, 0),
                            Vec4(0, 0, grid_step(grid_), 0), Vec4(grid_.origin, 1));
-    add_node(instance.name, world, {{"mesh", mesh}});
+    json content = {{"mesh", mesh}};
+    add_extras(content, instance.extras);
+    add_node(instance.name, world, std::move(content));
   }
 
   /// A reader reverses the winding below a node that mirrors, so it is written reversed. -1 for what draws nothing.
@@ -179,6 +188,7 @@ class SceneWriter {
     written["primitives"] = json::array();
     for (const Primitive& primitive : mesh.primitives)
       if (is_drawn(primitive)) written["primitives"].push_back(add_primitive(primitive, mirrored));
+    add_extras(written, mesh.extras);
     known->second = static_cast<int>(meshes_.size());
     meshes_.push_back(std::move(written));
     return known->second;
@@ -192,6 +202,7 @@ class SceneWriter {
     if (written.indices >= 0) result["indices"] = written.indices;
     if (written.material >= 0) result["material"] = materials_.use(written.material);
     if (written.mode != 4) result["mode"] = written.mode;
+    add_extras(result, primitive.extras);
     if (written.draco_view < 0) return result;
     uses_draco_ = true;
     json& draco = result["extensions"]["KHR_draco_mesh_compression"];

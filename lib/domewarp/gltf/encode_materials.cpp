@@ -213,6 +213,7 @@ json MaterialWriter::image_json(int index) {
   const Image& image = scene_.images[static_cast<std::size_t>(index)];
   json result = json::object();
   if (!image.name.empty()) result["name"] = image.name;
+  if (!image.extras.empty()) result["extras"] = json::parse(image.extras);
   if (placement_.image_path) {
     const std::string path = placement_.image_path(static_cast<std::size_t>(index));
     result["uri"] = percent_encode(path);
@@ -231,8 +232,11 @@ void MaterialWriter::finish(json& root) {
   for (const int i : textures_.items())
     root["textures"].push_back(texture_json(scene_.textures[static_cast<std::size_t>(i)]));
   for (const int i : images_.items()) root["images"].push_back(image_json(i));
-  for (const int i : samplers_.items())
-    root["samplers"].push_back(describe(scene_.samplers[static_cast<std::size_t>(i)]));
+  for (const int i : samplers_.items()) {
+    const Sampler& sampler = scene_.samplers[static_cast<std::size_t>(i)];
+    json& written = root["samplers"].emplace_back(describe(sampler));
+    if (!sampler.extras.empty()) written["extras"] = json::parse(sampler.extras);
+  }
 }
 
 } // namespace domewarp::gltf

@@ -97,6 +97,40 @@ std::string image_defect(std::span<const std::uint8_t> bytes, const std::string&
   return {};
 }
 
+namespace {
+
+double jpeg_pixels(std::span<const std::uint8_t> bytes) {
+  for (std::size_t offset = 2; offset + 9 <= bytes.size() && bytes[offset] == 0xFF;) {
+    if (is_frame(bytes[offset + 1])) return static_cast<double>(big_endian(bytes, offset + 5, 2)) * static_cast<double>(big_endian(bytes, offset + 7, 2));
+    offset += bytes[offset + 1] == 0xFF ? 1 : 2 + big_endian(bytes, offset + 2, 2);
+  }
+  return 0;
+}
+
+/// The three kinds of WebP keep their size at different places, little end first.
+double webp_pixels(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 30) return 0;
+  const auto word = [&](std::size_t offset, std::size_t count) {
+    std::size_t value = 0;
+    for (std::size_t i = count; i-- > 0;) value = (value << 8) | bytes[offset + i];
+    return value;
+  };
+  const auto product = [](std::size_t width, std::size_t height) { return static_cast<double>(width) * static_cast<double>(height); };
+  const std::string_view kind = text(bytes, 12, 4);
+  if (kind == "VP8X") return product(word(24, 3) + 1, word(27, 3) + 1);
+  if (kind == "VP8L") return product((word(21, 4) & 0x3FFF) + 1, (word(21, 4) >> 14 & 0x3FFF) + 1);
+  return kind == "VP8 " ? product(word(26, 2) & 0x3FFF, word(28, 2) & 0x3FFF) : 0;
+}
+
+} // namespace
+
+double image_pixels(std::span<const std::uint8_t> bytes) {
+  const std::string mime = sniff_mime(bytes);
+  if (mime == "image/png") return bytes.size() < 24 ? 0 : static_cast<double>(big_endian(bytes, 16, 4)) * static_cast<double>(big_endian(bytes, 20, 4));
+  if (mime == "image/jpeg") return jpeg_pixels(bytes);
+  return mime == "image/webp" ? webp_pixels(bytes) : 0;
+}
+
 std::string file_extension(const std::string& mime) {
   const auto found =
       std::find_if(formats.begin(), formats.end(), [&](const Format& format) { return format.mime == mime; });

@@ -33,17 +33,16 @@ bool is_affine(const Mat4& matrix) {
   return matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
 }
 
-/// The area of a triangle squared, of coordinates of single precision, stays far below what double precision holds.
-constexpr double largest_world = 3e38;
-
-double largest_number(const Mat4& matrix) {
-  double largest = 0;
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) largest = std::max(largest, std::abs(matrix[c][r]));
-  return largest;
-}
-
 } // namespace
+
+// The area of a triangle squared, of coordinates of single precision, stays far below what double precision holds.
+bool fits_single_precision(const Mat4& world) {
+  constexpr double largest = 3e38;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      if (!(std::abs(world[c][r]) <= largest)) return false;
+  return true;
+}
 
 Mat4 matrix_of(const std::vector<double>& translation, const std::vector<double>& rotation,
                const std::vector<double>& scale) {
@@ -86,7 +85,7 @@ std::vector<Mat4> world_matrices(const std::vector<NodeSource>& nodes, const std
     if (!is_affine(local)) refuse(at("nodes", node), "has a matrix that is not finite and affine");
     world[node] = parents[node] < 0 ? local : world[static_cast<std::size_t>(parents[node])] * local;
     if (!is_affine(world[node])) refuse(at("nodes", node), "has a world matrix that overflows");
-    if (largest_number(world[node]) > largest_world) refuse(at("nodes", node), "has a world matrix beyond what single precision holds");
+    if (!fits_single_precision(world[node])) refuse(at("nodes", node), "has a world matrix beyond what single precision holds");
     order.insert(order.end(), nodes[node].children.begin(), nodes[node].children.end());
   }
   // Every node has at most one parent, so what no root reaches hangs on a loop.

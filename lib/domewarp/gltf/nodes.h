@@ -23,4 +23,7 @@ std::vector<int> find_parents(const std::vector<NodeSource>& nodes);
 /// @throws Error(input) when one is not finite or not affine.
 std::vector<Mat4> world_matrices(const std::vector<NodeSource>& nodes, const std::vector<int>& parents);
 
+/// Whether the numbers of a world matrix stay within single precision; NaN does not.
+bool fits_single_precision(const Mat4& world);
+
 } // namespace domewarp::gltf

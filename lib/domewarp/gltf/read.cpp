@@ -69,6 +69,7 @@ class SceneReader {
       if (!is_usable(cameras_[i]))
         scene_.warnings.push_back(at("cameras", i) + ": has factors that make no picture and is left out");
     for (const int root : roots(name)) walk(root);
+    if (lost_node_extras_) scene_.dropped_extras.push_back("nodes");
     check_undrawn();
     check_skins();
     return std::move(scene_);
@@ -88,6 +89,7 @@ class SceneReader {
     if (index >= 0) {
       const SceneSource& source = document_.scenes[static_cast<std::size_t>(index)];
       scene_.name = source.name;
+      scene_.scene_extras = source.extras;
       for (const int node : source.nodes)
         if (parents_[static_cast<std::size_t>(node)] >= 0)
           scene_.warnings.push_back(at("scenes", static_cast<std::size_t>(index)) + ": names node " +
@@ -119,6 +121,7 @@ class SceneReader {
     if (node.mesh < 0 && !node.weights.empty())
       scene_.warnings.push_back(at("nodes", index) + ": has weights but no mesh");
     if (node.mesh >= 0) draw_mesh(node, index);
+    lost_node_extras_ = lost_node_extras_ || (node.mesh < 0 && !node.extras.empty());
     if (node.camera >= 0 && is_usable(cameras_[static_cast<std::size_t>(node.camera)])) {
       Camera& camera = scene_.cameras.emplace_back(cameras_[static_cast<std::size_t>(node.camera)]);
       if (!node.name.empty()) camera.name = node.name;
@@ -137,14 +140,21 @@ class SceneReader {
     const std::string name = node.name.empty() ? source.name : node.name;
     if (node.skin >= 0) return draw_skinned(node, name);
     if (node.instancing.empty()) return add_instance(node, name, world_[index]);
-    for (const Mat4& local : instance_matrices(node, index)) add_instance(node, name, world_[index] * local);
+    std::size_t instance = 0;
+    for (const Mat4& local : instance_matrices(node, index)) {
+      const Mat4 world = world_[index] * local;
+      if (!fits_single_precision(world))
+        refuse(at("nodes", index) + ".EXT_mesh_gpu_instancing", "has a world matrix beyond what single precision holds at instance " + std::to_string(instance));
+      add_instance(node, name, world);
+      ++instance;
+    }
   }
 
   void add_instance(const NodeSource& node, const std::string& name, const Mat4& world) {
-    budget_.charge(1, sizeof(Instance) + name.size(), "nodes");
+    budget_.charge(1, sizeof(Instance) + name.size() + node.extras.size(), "nodes");
     const int mesh = shared_mesh(node, is_mirrored(world));
     if (!scene_.meshes[static_cast<std::size_t>(mesh)].primitives.empty())
-      scene_.instances.push_back({name, mesh, world});
+      scene_.instances.push_back({name, mesh, world, node.extras});
   }
 
   /// One mesh for all instances that show the same thing.
@@ -170,14 +180,14 @@ class SceneReader {
     if (mesh.primitives.empty()) return;
     if (is_mirrored(joints))
       for (Primitive& primitive : mesh.primitives) reverse_triangles(primitive.indices, primitive.topology);
-    scene_.instances.push_back({name, add_mesh(std::move(mesh)), Mat4(1)});
+    scene_.instances.push_back({name, add_mesh(std::move(mesh)), Mat4(1), node.extras});
   }
 
   /// Without joints the mesh is not skinned.
   Mesh read_mesh(int index, const std::vector<double>& node_weights, const std::vector<Mat4>& joints) {
     const MeshSource& source = document_.meshes[static_cast<std::size_t>(index)];
     const std::vector<double>& weights = node_weights.empty() ? source.weights : node_weights;
-    Mesh mesh{source.name, {}};
+    Mesh mesh{source.name, {}, source.extras};
     for (std::size_t i = 0; i < source.primitives.size(); ++i) {
       const std::string place = at("meshes", static_cast<std::size_t>(index)) + "." + at("primitives", i);
       PrimitiveParts parts = read_primitive(document_, source.primitives[i], place, budget_, scene_.warnings);
@@ -189,6 +199,7 @@ class SceneReader {
       if (!joints.empty() && !parts.influences.empty())
         apply_skin(parts.influences, joints, place, scene_.warnings, parts.primitive);
       repair_attributes(parts.primitive, place, scene_.warnings);
+      parts.primitive.extras = source.primitives[i].extras;
       mesh.primitives.push_back(std::move(parts.primitive));
     }
     return mesh;
@@ -270,6 +281,7 @@ class SceneReader {
   std::map<std::pair<int, std::pair<bool, std::vector<double>>>, int> meshes_;
   std::map<int, std::set<int>> texcoords_; ///< that materials read
   std::set<int> visited_, drawn_, skins_;
+  bool lost_node_extras_ = false; ///< of nodes that draw nothing
 };
 
 /// Each sentence once, and not more of them than anyone reads.

@@ -11,6 +11,7 @@ struct FileSurvey {
   std::vector<std::filesystem::path> side_files; ///< buffers and images it refers to, in the order of the file; may be missing
   double file_bytes = 0;                         ///< of the file and its side files
   double decoded_bytes = 0;                      ///< of its accessors as 32-bit numbers
+  double texture_pixels = 0;                     ///< of the images of base colours and glow that stand in files or a GLB
   double drawn_triangles = 0;                    ///< instances multiplied out, over all scenes of the file
 };
 

@@ -57,7 +57,7 @@ void PointTree::build(std::uint32_t begin, std::uint32_t end) {
   build(middle, end);
 }
 
-void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, const std::function<void(std::uint32_t)>& visit) const {
+void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, const std::function<bool(std::uint32_t)>& visit) const {
   std::array<std::uint32_t, 64> open; // halving 2^32 points never goes deeper
   std::size_t count = 0;
   if (!nodes_.empty()) open[count++] = 0;
@@ -66,7 +66,8 @@ void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, c
     const Node& node = nodes_[index];
     if (!passes(a, b - a, node.low - Vec3(reach), node.high + Vec3(reach))) continue;
     if (node.right == 0) {
-      for (std::uint32_t i = node.begin; i < node.end; ++i) visit(ids_[i]);
+      for (std::uint32_t i = node.begin; i < node.end; ++i)
+        if (!visit(ids_[i])) return;
       continue;
     }
     open[count++] = node.right;
@@ -76,6 +77,7 @@ void PointTree::visit_near_segment(const Vec3& a, const Vec3& b, double reach, c
 
 // The lower id counts a pair, and the higher one where it alone reaches the other.
 std::size_t count_near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach) {
+  constexpr std::size_t most = 64; // of one point
   std::atomic<std::size_t> pairs = 0;
   parallel_ranges(tree.ids().size(), 128, [&](std::size_t begin, std::size_t end) {
     std::size_t here = 0;
@@ -83,10 +85,14 @@ std::size_t count_near_pairs(const PointTree& tree, const std::function<double(c
       const std::uint32_t own = tree.ids()[i];
       const Vec3 p = tree.points()[own];
       const double far = reach(p);
+      std::size_t own_pairs = 0, near = 0; // near: those counted by the other point, too
       tree.visit_near_segment(p, p, far, [&](std::uint32_t other) {
         const double distance = glm::length(tree.points()[other] - p);
-        here += other != own && distance <= far && (own < other || distance > reach(tree.points()[other]));
+        if (other == own || distance > far) return true;
+        own_pairs += own < other || distance > reach(tree.points()[other]);
+        return ++near < most;
       });
+      here += own_pairs;
     }
     pairs += here;
   });

@@ -18,9 +18,9 @@ public:
   /// @param ids which of them, finite ones only
   PointTree(std::span<const Vec3> points, std::vector<std::uint32_t> ids);
 
-  /// Calls visit(id) for every point within `reach` of the segment from a to b, and some farther ones. The order is a
-  /// function of the tree alone.
-  void visit_near_segment(const Vec3& a, const Vec3& b, double reach, const std::function<void(std::uint32_t)>& visit) const;
+  /// Calls visit(id) for every point within `reach` of the segment from a to b, and some farther ones, until it answers
+  /// false. The order is a function of the tree alone.
+  void visit_near_segment(const Vec3& a, const Vec3& b, double reach, const std::function<bool(std::uint32_t)>& visit) const;
 
   std::span<const Vec3> points() const { return points_; }
   std::span<const std::uint32_t> ids() const { return ids_; }
@@ -39,7 +39,8 @@ private:
   std::vector<Node> nodes_;
 };
 
-/// How many pairs of the tree's points are at most reach(point) of either apart.
+/// How many pairs of the tree's points are at most reach(point) of either apart, 64 of each point at most: a million points
+/// in one place must not take a million times a million steps.
 /// @param reach >= 0, of a point
 std::size_t count_near_pairs(const PointTree& tree, const std::function<double(const Vec3&)>& reach);
 

@@ -31,11 +31,13 @@ void find_on_edge(const PointTree& candidates, const MeshTopology::Edge& edge, s
   const Vec3 a = points[edge.a], b = points[edge.b], d = b - a;
   const double length = glm::length(d);
   const double reach = tolerance * length + std::ldexp(std::max(largest(a), largest(b)), -21); // four units in the last place
+  if (length <= 8 * reach) return; // nowhere is far enough from both ends
   candidates.visit_near_segment(a, b, reach, [&](std::uint32_t id) {
-    if (id == edge.a || id == edge.b) return;
+    if (id == edge.a || id == edge.b) return true;
     const double t = glm::dot(points[id] - a, d) / (length * length);
-    if (t * length <= 4 * reach || (1 - t) * length <= 4 * reach) return;
+    if (t * length <= 4 * reach || (1 - t) * length <= 4 * reach) return true;
     if (glm::length(points[id] - (a + t * d)) <= reach) found.push_back({index, id, t});
+    return true;
   });
 }
 

@@ -93,16 +93,67 @@ MeshTopology build_topology(std::uint32_t point_count, std::span<const Triangle>
   return topology;
 }
 
-std::vector<MeshTopology::Edge> find_open_edges(std::uint32_t point_count, std::span<const Triangle> triangles) {
-  const SortedSides sorted = sort_sides(point_count, triangles);
+namespace {
+
+/// A fixed random number per point (splitmix64).
+std::uint64_t random_number(std::uint32_t point) {
+  std::uint64_t x = (point + 1) * 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Per point, the sum of the random numbers of the higher ends of the sides that it is the lower end of, negative for
+/// those passed downwards. Not 0 at the lower end of an open edge, but for one chance in 2^64.
+std::vector<std::uint64_t> balance_sides(std::uint32_t point_count, std::size_t count, const std::function<Triangle(std::size_t)>& triangle) {
+  std::vector<std::uint64_t> balance(point_count, 0);
+  parallel_each(count, grain, [&](std::size_t f) {
+    const Triangle t = triangle(f);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t p = t[k], q = t[(k + 1) % 3];
+      const std::uint64_t number = random_number(std::max(p, q));
+      std::atomic_ref(balance[std::min(p, q)]).fetch_add(p < q ? number : -number, std::memory_order_relaxed);
+    }
+  });
+  return balance;
+}
+
+struct Ends {
+  std::uint32_t a = 0, b = 0; ///< a < b
+};
+
+/// The sides whose lower ends are out of balance, in the order of the triangles.
+std::vector<Ends> unbalanced_sides(std::uint32_t point_count, std::size_t count, const std::function<Triangle(std::size_t)>& triangle) {
+  const std::vector<std::uint64_t> balance = balance_sides(point_count, count, triangle);
+  std::vector<std::vector<Ends>> blocks((count + grain - 1) / grain);
+  parallel_each(blocks.size(), 1, [&](std::size_t block) {
+    for (std::size_t f = block * grain; f < std::min(count, (block + 1) * grain); ++f) {
+      const Triangle t = triangle(f);
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const auto [a, b] = ends(t, k); balance[a] != 0) blocks[block].push_back({a, b});
+    }
+  });
+  std::vector<Ends> sides;
+  for (const auto& block : blocks) sides.insert(sides.end(), block.begin(), block.end());
+  return sides;
+}
+
+} // namespace
+
+std::vector<MeshTopology::Edge> find_open_edges(std::uint32_t point_count, std::size_t count, const std::function<Triangle(std::size_t)>& triangle) {
+  const std::vector<Ends> sides = unbalanced_sides(point_count, count, triangle);
+  std::vector<std::uint32_t> begin(point_count + std::size_t(1), 0);
+  for (const Ends& side : sides) ++begin[side.a + std::size_t(1)];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  RawVector<std::uint32_t> higher(sides.size());
+  for (const Ends& side : sides) higher[begin[side.a]++] = side.b; // now begin[p] is where p + 1 begins
   std::vector<std::vector<MeshTopology::Edge>> blocks(point_count / grain + 1);
   parallel_each(blocks.size(), 1, [&](std::size_t block) {
     for (std::size_t p = block * grain; p < std::min<std::size_t>(point_count, (block + 1) * grain); ++p) {
-      const auto is_same = [&](std::uint32_t i, std::uint32_t j) { return sorted.sides[i].b == sorted.sides[j].b; };
-      const std::uint32_t begin = sorted.begin[p], end = sorted.begin[p + 1];
-      for (std::uint32_t i = begin; i < end; ++i)
-        if ((i == begin || !is_same(i, i - 1)) && (i + 1 == end || !is_same(i, i + 1)))
-          blocks[block].push_back({static_cast<std::uint32_t>(p), sorted.sides[i].b, 1});
+      const auto first = higher.begin() + (p == 0 ? 0 : begin[p - 1]), last = higher.begin() + begin[p];
+      std::sort(first, last);
+      for (auto i = first; i != last; ++i)
+        if ((i == first || i[0] != i[-1]) && (i + 1 == last || i[0] != i[1])) blocks[block].push_back({static_cast<std::uint32_t>(p), *i, 1});
     }
   });
   std::vector<MeshTopology::Edge> edges;

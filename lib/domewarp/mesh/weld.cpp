@@ -154,6 +154,7 @@ std::size_t snap(Weld& weld, double distance) {
   for (const std::uint32_t id : all)
     tree.visit_near_segment(weld.points[id], weld.points[id], distance, [&](std::uint32_t other) {
       if (other < id && glm::length(weld.points[other] - weld.points[id]) <= distance) join(id, other);
+      return true;
     });
   std::size_t moved = 0;
   for (std::uint32_t& id : weld.point_of) id = find(id);

@@ -51,7 +51,7 @@ public:
     std::atomic<std::size_t> off_picture = 0, hidden = 0, zero_area = 0;
     parallel_each(drawn.faces.size(), grain, [&](std::size_t i) {
       std::atomic<std::size_t>* reason = nullptr;
-      const Triangle& point = corners_of(soup_, refined_, drawn.faces[i]).point;
+      const Triangle point = corners_of(soup_, refined_, drawn.faces[i]).point;
       const std::array<const MappedPoint*, 3> corner{&refined_.points[point[0]], &refined_.points[point[1]], &refined_.points[point[2]]};
       if (is_off_picture(corner)) reason = &off_picture;
       else if (options_.is_hidden && is_hidden(corner, options_)) reason = &hidden;
@@ -98,7 +98,7 @@ private:
 };
 
 std::vector<std::uint8_t> drawn_wedges(const Soup& soup, const RefinedMesh& refined, const DrawnFaces& drawn) {
-  std::vector<std::uint8_t> is_drawn(soup.wedge_point.size() + soup.extra_wedges.size() + refined.wedges.size(), 0);
+  std::vector<std::uint8_t> is_drawn(soup.wedge_point.size() + refined.wedges.size(), 0);
   parallel_each(drawn.faces.size(), grain, [&](std::size_t i) {
     for (const std::uint32_t wedge : corners_of(soup, refined, drawn.faces[i]).wedge) std::atomic_ref(is_drawn[wedge]).store(1, std::memory_order_relaxed);
   });

@@ -65,7 +65,8 @@ public:
   void run(std::uint32_t source) {
     source_ = source;
     const SoupFace& face = soup_.faces[source];
-    divide({Corner{face.point[0], face.wedge[0]}, Corner{face.point[1], face.wedge[1]}, Corner{face.point[2], face.wedge[2]}}, 0);
+    const Triangle point = points_of(soup_, face);
+    divide({Corner{point[0], face.wedge[0]}, Corner{point[1], face.wedge[1]}, Corner{point[2], face.wedge[2]}}, 0);
   }
 
   /// Appends to what earlier blocks have made.

@@ -17,10 +17,10 @@ namespace {
 void count_others(const Soup& soup, const SiftedFaces& sifted, const MeshTopology& topology, std::vector<SourceEdge>& counts) {
   std::vector<std::uint8_t> is_end(soup.points.size(), 0);
   for (const std::uint32_t f : sifted.refine)
-    for (const std::uint32_t point : soup.faces[f].point) is_end[point] = 1;
+    for (const std::uint32_t point : points_of(soup, soup.faces[f])) is_end[point] = 1;
   parallel_each(soup.faces.size(), level_block, [&](std::size_t f) {
     if (sifted.fate[f] == FaceFate::refine) return;
-    const Triangle& point = soup.faces[f].point;
+    const Triangle point = points_of(soup, soup.faces[f]);
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t p = point[k], q = point[(k + 1) % 3];
       const MeshTopology::Edge* edge = is_end[p] && is_end[q] ? find_edge(topology.edges, p, q) : nullptr;
@@ -37,7 +37,7 @@ void add_source_edges(LevelState& state, const SiftedFaces& sifted) {
   RefinedMesh& mesh = state.mesh;
   const std::size_t count = sifted.refine.size();
   RawVector<Triangle> triangles(count);
-  parallel_each(count, level_block, [&](std::size_t i) { triangles[i] = soup.faces[sifted.refine[i]].point; });
+  parallel_each(count, level_block, [&](std::size_t i) { triangles[i] = points_of(soup, soup.faces[sifted.refine[i]]); });
   const MeshTopology topology = build_topology(static_cast<std::uint32_t>(soup.points.size()), triangles);
   mesh.edges.resize(topology.edges.size());
   mesh.source_edges.resize(topology.edges.size());
@@ -50,7 +50,7 @@ void add_source_edges(LevelState& state, const SiftedFaces& sifted) {
   state.active.resize(count);
   parallel_each(count, level_block, [&](std::size_t i) {
     const SoupFace& face = soup.faces[sifted.refine[i]];
-    state.active[i] = {face.point, face.wedge, topology.edges_of[i], sifted.refine[i]};
+    state.active[i] = {triangles[i], face.wedge, topology.edges_of[i], sifted.refine[i]};
   });
 }
 
@@ -73,7 +73,7 @@ LevelState start_levels(const Soup& soup, const EdgeOracle& oracle, const LevelO
   mesh.source_points = soup.points.size();
   parallel_each(soup.points.size(), level_block, [&](std::size_t i) { mesh.points[i] = oracle.locate(soup.points[i]); });
   mesh.evaluations = soup.points.size();
-  state.first_wedge = static_cast<std::uint32_t>(soup.wedge_point.size() + soup.extra_wedges.size());
+  state.first_wedge = static_cast<std::uint32_t>(soup.wedge_point.size());
   SiftedFaces sifted = sift_faces(soup, mesh.points, oracle, options);
   if (!sifted.refine.empty()) add_source_edges(state, sifted);
   mesh.whole = std::move(sifted.whole);
@@ -92,7 +92,7 @@ Ends ends_of(std::uint32_t p, std::uint32_t q) { return {std::min(p, q), std::ma
 /// Takes the faces that have one of the sides out of the list.
 std::vector<WholeFace> take_faces(const Soup& soup, const std::map<Ends, std::uint32_t>& sides, std::vector<WholeFace>& whole) {
   const auto is_touched = [&](const WholeFace& face) {
-    const Triangle& point = soup.faces[face.source].point;
+    const Triangle point = points_of(soup, soup.faces[face.source]);
     for (int k = 0; k < 3; ++k)
       if (sides.contains(ends_of(point[k], point[(k + 1) % 3]))) return true;
     return false;
@@ -118,9 +118,10 @@ void wake_whole_faces(LevelState& state, const std::vector<std::uint32_t>& sides
     if (is_whole_source_edge(mesh, mesh.edges[e])) known[ends_of(mesh.edges[e].a, mesh.edges[e].b)] = e;
   for (const WholeFace& face : woken) {
     const SoupFace& source = soup.faces[face.source];
-    RefinedFace& added = mesh.faces.emplace_back(RefinedFace{source.point, source.wedge, {}, face.source});
+    const Triangle point = points_of(soup, source);
+    RefinedFace& added = mesh.faces.emplace_back(RefinedFace{point, source.wedge, {}, face.source});
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t p = source.point[k], q = source.point[(k + 1) % 3];
+      const std::uint32_t p = point[k], q = point[(k + 1) % 3];
       const auto [edge, is_new] = known.try_emplace(ends_of(p, q), static_cast<std::uint32_t>(mesh.edges.size()));
       added.edge[k] = edge->second;
       if (!is_new) continue;
@@ -132,10 +133,11 @@ void wake_whole_faces(LevelState& state, const std::vector<std::uint32_t>& sides
     }
   }
   for (SourceEdge& edge : mesh.source_edges) edge.whole = 0;
-  for (const WholeFace& face : mesh.whole)
+  for (const WholeFace& face : mesh.whole) {
+    const Triangle point = points_of(soup, soup.faces[face.source]);
     for (int k = 0; k < 3; ++k)
-      if (const auto edge = known.find(ends_of(soup.faces[face.source].point[k], soup.faces[face.source].point[(k + 1) % 3])); edge != known.end())
-        ++mesh.source_edges[mesh.edges[edge->second].source].whole;
+      if (const auto edge = known.find(ends_of(point[k], point[(k + 1) % 3])); edge != known.end()) ++mesh.source_edges[mesh.edges[edge->second].source].whole;
+  }
   for (SourceEdge& edge : mesh.source_edges) edge.faces = std::max(edge.faces, edge.whole + 1);
 }
 

@@ -94,6 +94,7 @@ public:
     report.map_evaluations += vertices_.size();
     out_.topology = source.topology;
     out_.material = source.material;
+    out_.extras = source.extras;
     for (const Attribute* attribute : written_) out_.attributes.push_back({attribute->name, attribute->components, {}});
     if (options.source_attributes) out_.attributes.push_back({source_position, 3, {}});
   }

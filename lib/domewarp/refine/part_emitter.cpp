@@ -26,6 +26,7 @@ public:
   PartOutput emit(std::span<const DrawnFace> faces) {
     PartOutput out;
     out.primitive.material = source_.material;
+    out.primitive.extras = source_.extras;
     out.primitive.indices.resize(3 * faces.size());
     out.primitive.keeps_order = !job_.options.vertex_colour && job_.values.derived_of(part_).empty();
     if (job_.options.vertex_colour)
@@ -43,7 +44,7 @@ private:
 
   /// One vertex per wedge that is drawn.
   void number(std::span<const DrawnFace> faces, std::vector<std::uint32_t>& indices) {
-    const std::size_t first = job_.soup.parts[part_].first_wedge, count = source_.positions.size();
+    const std::size_t first = job_.soup.parts[part_].first_wedge, count = source_vertices();
     std::vector<std::size_t> before((count + grain - 1) / grain + 1, 0);
     const auto each_drawn = [&](auto&& body) {
       parallel_each(before.size() - 1, 1, [&](std::size_t block) {
@@ -91,14 +92,21 @@ private:
     return f == g || (has_normals_ && is_seen_from_behind(f) == is_seen_from_behind(g));
   }
 
-  Vec3 normal_of(const SoupFace& face) const {
-    const std::vector<Vec3>& p = job_.soup.points;
-    return glm::cross(p[face.point[1]] - p[face.point[0]], p[face.point[2]] - p[face.point[0]]);
+  std::size_t source_vertices() const {
+    const std::vector<SoupPart>& parts = job_.soup.parts;
+    return (part_ + 1 < parts.size() ? parts[part_ + 1].first_wedge : job_.soup.source_wedges) - parts[part_].first_wedge;
   }
 
+  std::array<Vec3, 3> corners_of_source(std::uint32_t f) const {
+    const Triangle point = points_of(job_.soup, job_.soup.faces[f]);
+    return {job_.refined.points[point[0]].eye, job_.refined.points[point[1]].eye, job_.refined.points[point[2]].eye};
+  }
+
+  static Vec3 normal_of(const std::array<Vec3, 3>& p) { return glm::cross(p[1] - p[0], p[2] - p[0]); }
+
   bool is_seen_from_behind(std::uint32_t f) const {
-    const SoupFace& face = job_.soup.faces[f];
-    return glm::dot(normal_of(face), job_.soup.points[face.point[0]]) > 0;
+    const std::array<Vec3, 3> corner = corners_of_source(f);
+    return glm::dot(normal_of(corner), corner[0]) > 0;
   }
 
   const MappedPoint& point(std::size_t vertex) const { return job_.refined.points[job_.values.point_of(wedge_[vertex])]; }
@@ -165,14 +173,13 @@ private:
     const int components = given != nullptr && given->components == 4 ? 4 : 3;
     std::vector<float> colours(wedge_.size() * components);
     parallel_each(wedge_.size(), 64, [&](std::size_t i) {
-      const SoupFace& face = job_.soup.faces[face_[i]];
-      const std::vector<Vec3>& p = job_.soup.points;
+      const std::array<Vec3, 3> corner = corners_of_source(face_[i]);
       VertexToColour vertex;
       vertex.instance = job_.soup.parts[part_].instance;
       vertex.primitive = job_.soup.parts[part_].primitive;
       vertex.eye = point(i).eye;
-      vertex.face_normal = normal_of(face);
-      vertex.face_centre = (p[face.point[0]] + p[face.point[1]] + p[face.point[2]]) / 3.0;
+      vertex.face_normal = normal_of(corner);
+      vertex.face_centre = (corner[0] + corner[1] + corner[2]) / 3.0;
       vertex.normal = normals == nullptr ? vertex.face_normal : Vec3(normals->values[3 * i], normals->values[3 * i + 1], normals->values[3 * i + 2]);
       for (int c = 0; given != nullptr && c < given->components; ++c) vertex.colour[c] = given->values[i * given->components + c];
       const Vec4 colour = job_.options.vertex_colour(vertex);

@@ -15,12 +15,12 @@ inline constexpr DrawnFace whole_bit = 0x80000000;
 
 /// The corners of a drawn face.
 struct DrawnCorners {
-  const Triangle& point;
+  Triangle point;
   const Triangle& wedge;
   std::uint32_t source; ///< face of the soup
 };
 inline DrawnCorners corners_of(const Soup& soup, const RefinedMesh& refined, DrawnFace face) {
-  if (face & whole_bit) return {soup.faces[face & ~whole_bit].point, soup.faces[face & ~whole_bit].wedge, face & ~whole_bit};
+  if (face & whole_bit) return {points_of(soup, soup.faces[face & ~whole_bit]), soup.faces[face & ~whole_bit].wedge, face & ~whole_bit};
   return {refined.faces[face].point, refined.faces[face].wedge, refined.faces[face].source};
 }
 

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/errors.h"
+#include "domewarp/core/memory.h"
 #include "domewarp/core/parallel.h"
 #include "domewarp/refine/emit.h"
 #include "domewarp/refine/levels.h"
@@ -56,7 +59,7 @@ double extent(const Soup& soup) {
   std::vector<double> farthest2((soup.faces.size() + block_size - 1) / block_size, 0);
   parallel_each(farthest2.size(), 1, [&](std::size_t block) {
     for (std::size_t f = block * block_size; f < std::min(soup.faces.size(), (block + 1) * block_size); ++f)
-      for (const std::uint32_t point : soup.faces[f].point)
+      for (const std::uint32_t point : points_of(soup, soup.faces[f]))
         farthest2[block] = std::max(farthest2[block], glm::dot(soup.points[point], soup.points[point]));
   });
   return farthest2.empty() ? 0 : std::sqrt(*std::max_element(farthest2.begin(), farthest2.end()));
@@ -95,10 +98,13 @@ Scene empty_copy(const Scene& scene) {
   out.images = scene.images;
   out.samplers = scene.samplers;
   out.copyright = scene.copyright;
+  out.asset_extras = scene.asset_extras;
+  out.scene_extras = scene.scene_extras;
+  out.root_extras = scene.root_extras;
   for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i) {
     const Instance& instance = scene.instances[i];
-    out.meshes.push_back({scene.meshes[instance.mesh].name, {}});
-    out.instances.push_back({instance.name, i, Mat4(1)});
+    out.meshes.push_back({scene.meshes[instance.mesh].name, {}, scene.meshes[instance.mesh].extras});
+    out.instances.push_back({instance.name, i, Mat4(1), instance.extras});
   }
   return out;
 }
@@ -130,8 +136,11 @@ void refine_isotropic(const Scene& scene, const View& view, const Surface& surfa
 
 } // namespace
 
-Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
-             const RefineOptions& options, RefineReport& report) {
+namespace {
+
+/// @param release called once the triangles' positions and indices are no longer needed
+Scene refine_and_release(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+                         const RefineOptions& options, RefineReport& report, const std::function<void()>& release) {
   check(options);
   Scene out = empty_copy(scene);
   if (options.subdivision == Subdivision::isotropic) {
@@ -142,7 +151,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   Stopwatch watch;
   const Vec2 half_extent = kept_half_extent(options, raster);
   const ViewCull cull(surface, half_extent);
-  const Soup soup = make_soup(scene, view, {options.skip.back_faces, options.weld, options.skip.outside_view ? &cull : nullptr});
+  Soup soup = make_soup(scene, view, {options.skip.back_faces, options.weld, options.skip.outside_view ? &cull : nullptr});
   report.triangles_in = soup.source_triangles;
   report.skipped.outside_view = soup.outside_view;
   report.skipped.degenerate = soup.degenerate_triangles;
@@ -154,6 +163,7 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
   const LineCounts lines = count_lines(scene, view);
   note_lines(lines, report);
   report.near = options.near > 0 ? options.near : std::max(1e-5 * std::max(extent(soup), lines.extent), 1e-30);
+  release();
   report.soup_ms = watch.lap();
 
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
@@ -168,14 +178,34 @@ Scene refine(const Scene& scene, const View& view, const Surface& surface, const
     report.triangles_clipped += refined.clipped;
     report.uncertified_faces += refined.uncertified_faces;
     if (refined.stopped) report.limits_hit.push_back("max-triangles");
+    if (b + 1 == map.branches.size()) free_vector(soup.points); // they stand in `refined`, too
     report.levels_ms += watch.lap();
     audit_edges(refined, oracle, raster, options, report);
-    refined.edges = {}; // the largest part, and nobody asks any more
+    free_vector(refined.edges); // the largest part, and nobody asks any more
     emit(scene, view, soup, refined, branch.branch().orientation, raster, options, out, report);
     emit_lines(scene, view, oracle, raster, options, out, report);
     report.emit_ms += watch.lap();
   }
   out.cameras = {picture_camera(raster, options.projection, report.smallest_depth, report.largest_depth)};
+  return out;
+}
+
+} // namespace
+
+Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+             const RefineOptions& options, RefineReport& report) {
+  return refine_and_release(scene, view, surface, map, raster, options, report, [] {});
+}
+
+Scene refine(Scene&& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+             const RefineOptions& options, RefineReport& report) {
+  std::vector<Image> images = std::exchange(scene.images, {});
+  Scene out = refine_and_release(scene, view, surface, map, raster, options, report, [&] {
+    for (Mesh& mesh : scene.meshes)
+      for (Primitive& primitive : mesh.primitives)
+        if (primitive.topology == Topology::triangles) free_vector(primitive.positions), free_vector(primitive.indices);
+  });
+  out.images = std::move(images);
   return out;
 }
 

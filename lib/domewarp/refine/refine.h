@@ -100,4 +100,9 @@ struct RefineReport {
 Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
              const RefineOptions& options, RefineReport& report);
 
+/// The same in less memory: the positions and indices of the source's triangles are freed
+/// on the way, its images moved.
+Scene refine(Scene&& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
+             const RefineOptions& options, RefineReport& report);
+
 } // namespace domewarp

@@ -107,7 +107,7 @@ SiftedFaces sift_faces(const Soup& soup, std::span<const MappedPoint> points, co
     Block& block = blocks[i];
     const std::size_t end = std::min(soup.faces.size(), (i + 1) * block_size);
     for (std::size_t f = i * block_size; f < end; ++f) {
-      const Triangle& point = soup.faces[f].point;
+      const Triangle point = points_of(soup, soup.faces[f]);
       const MappedPoint &a = points[point[0]], &b = points[point[1]], &c = points[point[2]];
       Verdict verdict = sieve.judge(a, b, c);
       if (verdict.fate == FaceFate::refine && options.cull != nullptr && !options.cull->may_be_seen(a, b, c)) verdict = {FaceFate::drop, 0, 0, true};

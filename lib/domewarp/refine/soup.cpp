@@ -85,8 +85,9 @@ RawVector<Vec3> eye_positions(const Scene& scene, const View& view, const std::v
   return positions;
 }
 
-bool is_degenerate(const SoupFace& face) {
-  return face.point[0] == face.point[1] || face.point[1] == face.point[2] || face.point[2] == face.point[0];
+bool is_degenerate(const Soup& soup, const SoupFace& face) {
+  const Triangle point = points_of(soup, face);
+  return point[0] == point[1] || point[1] == point[2] || point[2] == point[0];
 }
 
 /// Drops the faces that is_dropped(face) names. @return how many
@@ -100,37 +101,54 @@ std::size_t drop_faces(Soup& soup, Predicate&& is_dropped) {
     count += here;
   });
   if (count == 0) return 0;
-  std::size_t next = 0;
-  for (std::size_t f = 0; f < dropped.size(); ++f)
-    if (!dropped[f]) soup.faces[next++] = soup.faces[f];
-  soup.faces.resize(next);
+  const auto face_at = [&](const std::uint8_t* flag) { return soup.faces.begin() + (flag - dropped.data()); };
+  const std::uint8_t* const end = dropped.data() + dropped.size();
+  const std::uint8_t* run = std::find(dropped.data(), const_cast<std::uint8_t*>(end), 1);
+  auto next = face_at(run);
+  while (run != end) { // a run of kept faces at a time
+    const std::uint8_t* const kept = std::find(run, end, 0);
+    run = std::find(kept, end, 1);
+    next = std::move(face_at(kept), face_at(run), next);
+  }
+  soup.faces.erase(next, soup.faces.end());
   return count;
 }
 
 void add_faces(const Scene& scene, Soup& soup) {
   std::vector<std::size_t> first(soup.parts.size() + 1, 0);
   for (std::size_t p = 0; p < soup.parts.size(); ++p) first[p + 1] = first[p] + primitive_of(scene, soup.parts[p]).indices.size() / 3;
+  soup.faces.reserve(first.back() + first.back() / 64 + 64); // splitting a few must not move them all
   soup.faces.resize(first.back());
   parallel_each(soup.parts.size(), 1, [&](std::size_t p) {
     const Primitive& primitive = primitive_of(scene, soup.parts[p]);
     parallel_each(first[p + 1] - first[p], 4096, [&](std::size_t f) {
       SoupFace& face = soup.faces[first[p] + f];
-      for (int k = 0; k < 3; ++k) {
-        face.wedge[k] = soup.parts[p].first_wedge + primitive.indices[3 * f + k];
-        face.point[k] = soup.wedge_point[face.wedge[k]];
-      }
+      for (int k = 0; k < 3; ++k) face.wedge[k] = soup.parts[p].first_wedge + primitive.indices[3 * f + k];
       face.part = static_cast<std::uint32_t>(p);
     });
   });
   soup.source_triangles = soup.outside_view + soup.faces.size();
-  soup.degenerate_triangles = drop_faces(soup, is_degenerate);
+  soup.degenerate_triangles = drop_faces(soup, [&](const SoupFace& face) { return is_degenerate(soup, face); });
 }
 
 /// Only the open edges.
 MeshTopology topology_of(const Soup& soup) {
-  RawVector<Triangle> triangles(soup.faces.size());
-  parallel_each(triangles.size(), 4096, [&](std::size_t f) { triangles[f] = soup.faces[f].point; });
-  return {find_open_edges(static_cast<std::uint32_t>(soup.points.size()), triangles), {}};
+  const auto triangle = [&](std::size_t f) { return points_of(soup, soup.faces[f]); };
+  return {find_open_edges(static_cast<std::uint32_t>(soup.points.size()), soup.faces.size(), triangle), {}};
+}
+
+/// Replaces faces, from the last to the first, so that none moves twice. @param faces ascending
+/// @param pieces of all of them, in order; @param ends of the pieces of each
+void replace_faces(RawVector<SoupFace>& all, std::span<const std::uint32_t> faces, std::span<const SoupFace> pieces, std::span<const std::size_t> ends) {
+  std::size_t old_end = all.size(), end = all.size() + pieces.size() - faces.size();
+  all.resize(end);
+  for (std::size_t i = faces.size(); i-- > 0;) {
+    const std::size_t after = faces[i] + std::size_t(1), begin = i == 0 ? 0 : ends[i - 1];
+    std::move_backward(all.begin() + after, all.begin() + old_end, all.begin() + end);
+    end -= old_end - after;
+    std::copy(pieces.begin() + begin, pieces.begin() + ends[i], all.begin() + (end -= ends[i] - begin));
+    old_end = faces[i];
+  }
 }
 
 /// Splits faces at the points that lie inside their open edges, one point at a time, until none is left.
@@ -143,26 +161,46 @@ public:
   bool run() {
     soup_.t_junctions += junctions_.size();
     if (junctions_.empty()) return false;
-    std::vector<std::uint8_t> is_end(soup_.points.size(), 0);
-    for (const TJunction& junction : junctions_) is_end[open_.edges[junction.edge].a] = is_end[open_.edges[junction.edge].b] = 1;
-    RawVector<SoupFace> done;
-    done.reserve(soup_.faces.size() + 2 * junctions_.size());
-    for (const SoupFace& face : soup_.faces) split(face, is_end, done);
-    soup_.faces = std::move(done);
+    const std::vector<std::uint32_t> touched = touched_faces();
+    RawVector<SoupFace> pieces;
+    std::vector<std::size_t> ends;
+    for (const std::uint32_t face : touched) {
+      split(soup_.faces[face], pieces);
+      ends.push_back(pieces.size());
+    }
+    replace_faces(soup_.faces, touched, pieces, ends);
     return true;
   }
 
 private:
-  void split(const SoupFace& face, const std::vector<std::uint8_t>& is_end, RawVector<SoupFace>& done) {
+  /// Those with a side whose ends are ends of edges to be split, ascending.
+  std::vector<std::uint32_t> touched_faces() const {
+    constexpr std::size_t block_size = 16384;
+    std::vector<std::uint8_t> is_end(soup_.points.size(), 0);
+    for (const TJunction& junction : junctions_) is_end[open_.edges[junction.edge].a] = is_end[open_.edges[junction.edge].b] = 1;
+    std::vector<std::vector<std::uint32_t>> blocks((soup_.faces.size() + block_size - 1) / block_size);
+    parallel_each(blocks.size(), 1, [&](std::size_t block) {
+      for (std::size_t f = block * block_size; f < std::min(soup_.faces.size(), (block + 1) * block_size); ++f) {
+        const Triangle point = points_of(soup_, soup_.faces[f]);
+        if (is_end[point[0]] + is_end[point[1]] + is_end[point[2]] >= 2) blocks[block].push_back(static_cast<std::uint32_t>(f));
+      }
+    });
+    std::vector<std::uint32_t> touched;
+    for (const auto& block : blocks) touched.insert(touched.end(), block.begin(), block.end());
+    return touched;
+  }
+
+  void split(const SoupFace& face, RawVector<SoupFace>& done) {
     std::array<std::vector<std::uint32_t>, 3> on; // points to insert on each side, in the face's direction
+    const Triangle point = points_of(soup_, face);
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = face.point[k], to = face.point[(k + 1) % 3];
-      const MeshTopology::Edge* edge = is_end[from] && is_end[to] ? find_edge(open_.edges, from, to) : nullptr;
+      const std::uint32_t from = point[k], to = point[(k + 1) % 3];
+      const MeshTopology::Edge* edge = find_edge(open_.edges, from, to);
       if (edge == nullptr) continue;
       const auto range = std::equal_range(junctions_.begin(), junctions_.end(), TJunction{static_cast<std::uint32_t>(edge - open_.edges.data()), 0, 0},
                                           [](const TJunction& x, const TJunction& y) { return x.edge < y.edge; });
       for (auto it = range.first; it != range.second; ++it)
-        if (std::find(face.point.begin(), face.point.end(), it->point) == face.point.end()) on[k].push_back(it->point);
+        if (std::find(point.begin(), point.end(), it->point) == point.end()) on[k].push_back(it->point);
       if (edge->a != from) std::reverse(on[k].begin(), on[k].end());
     }
     cut(face, on, done);
@@ -179,7 +217,6 @@ private:
     const auto middle = side->begin() + static_cast<std::ptrdiff_t>(side->size() / 2);
     const std::uint32_t wedge = add_wedge(face, k, *middle);
     SoupFace left = face, right = face;
-    left.point[next] = right.point[k] = *middle;
     left.wedge[next] = right.wedge[k] = wedge;
     std::array<std::vector<std::uint32_t>, 3> on_left, on_right;
     on_left[k].assign(side->begin(), middle);
@@ -191,10 +228,12 @@ private:
   }
 
   std::uint32_t add_wedge(const SoupFace& face, int k, std::uint32_t point) {
-    const Vec3 a = soup_.points[face.point[k]], d = soup_.points[face.point[(k + 1) % 3]] - a;
+    const Triangle corner = points_of(soup_, face);
+    const Vec3 a = soup_.points[corner[k]], d = soup_.points[corner[(k + 1) % 3]] - a;
     const double t = glm::dot(soup_.points[point] - a, d) / glm::dot(d, d);
     soup_.extra_wedges.push_back({{face.wedge[k], face.wedge[(k + 1) % 3], face.wedge[k]}, {1 - t, t, 0}, point, face.part});
-    return static_cast<std::uint32_t>(soup_.wedge_point.size() + soup_.extra_wedges.size() - 1);
+    soup_.wedge_point.push_back(point);
+    return static_cast<std::uint32_t>(soup_.wedge_point.size() - 1);
   }
 
   Soup& soup_;
@@ -203,10 +242,12 @@ private:
 };
 
 bool is_seen_from_behind(const Soup& soup, const SoupFace& face) {
-  const Vec3 a = soup.points[face.point[0]], b = soup.points[face.point[1]], c = soup.points[face.point[2]];
+  const Triangle point = points_of(soup, face);
+  const Vec3 a = soup.points[point[0]], b = soup.points[point[1]], c = soup.points[point[2]];
   const Vec3 normal = glm::cross(b - a, c - a);
   // Faces within rounding of edge-on stay: they cover nothing, but dropping one could open its neighbour's edge.
-  return glm::dot(normal, a) > 1e-12 * glm::length(normal) * glm::length(a);
+  const double away = glm::dot(normal, a);
+  return away > 0 && away > 1e-12 * glm::length(normal) * glm::length(a);
 }
 
 void drop_back_faces(const Scene& scene, Soup& soup) {
@@ -229,6 +270,7 @@ Soup make_soup(const Scene& scene, const View& view, const SoupOptions& options)
   if (options.weld > 0) soup.snapped = snap(welded, options.weld);
   soup.points = std::move(welded.points);
   soup.wedge_point = std::move(welded.point_of);
+  soup.source_wedges = soup.wedge_point.size();
   add_faces(scene, soup);
   const MeshTopology open = topology_of(soup);
   soup.near_misses = count_near_misses(soup.points, open, largest(view.eye));
@@ -250,6 +292,7 @@ Soup make_loose_soup(const Scene& scene, const View& view) {
   soup.points.assign(positions.begin(), positions.end());
   soup.wedge_point.resize(soup.points.size());
   std::iota(soup.wedge_point.begin(), soup.wedge_point.end(), 0u);
+  soup.source_wedges = soup.wedge_point.size();
   add_faces(scene, soup);
   return soup;
 }

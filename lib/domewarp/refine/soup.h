@@ -31,8 +31,7 @@ struct Wedge {
 };
 
 struct SoupFace {
-  Triangle point;               ///< into Soup::points, counter-clockwise, all different
-  Triangle wedge;               ///< below wedge count: source vertices first, then Soup::extra_wedges
+  Triangle wedge;               ///< counter-clockwise, into Soup::wedge_point; points_of() are all different
   std::uint32_t part = 0;
 };
 
@@ -40,7 +39,8 @@ struct SoupFace {
 struct Soup {
   std::vector<SoupPart> parts;
   std::vector<Vec3> points;
-  std::vector<std::uint32_t> wedge_point; ///< per source vertex
+  std::vector<std::uint32_t> wedge_point; ///< per wedge: source vertices first, then extra_wedges
+  std::size_t source_wedges = 0;          ///< how many of these are source vertices
   std::vector<Wedge> extra_wedges;        ///< made where T-junctions were split
   RawVector<SoupFace> faces;
   std::size_t source_triangles = 0;
@@ -52,6 +52,11 @@ struct Soup {
   std::size_t open_edges = 0;             ///< of the source, T-junctions split
   std::size_t t_junctions = 0;            ///< split, so that the warp does not open them
 };
+
+/// The corners of a face, into Soup::points.
+inline Triangle points_of(const Soup& soup, const SoupFace& face) {
+  return {soup.wedge_point[face.wedge[0]], soup.wedge_point[face.wedge[1]], soup.wedge_point[face.wedge[2]]};
+}
 
 struct SoupOptions {
   bool cull_back_faces = true;

@@ -10,7 +10,7 @@ namespace domewarp {
 
 WedgeValues::WedgeValues(const Scene& scene, const Soup& soup, const RefinedMesh& refined, const std::vector<std::uint8_t>& drawn,
                          const RefineOptions& options)
-    : scene_(scene), soup_(soup), refined_(refined), first_derived_(static_cast<std::uint32_t>(soup.wedge_point.size())), derived_of_(soup.parts.size()) {
+    : scene_(scene), soup_(soup), refined_(refined), first_derived_(static_cast<std::uint32_t>(soup.source_wedges)), derived_of_(soup.parts.size()) {
   for (std::uint32_t part = 0; part < soup.parts.size(); ++part) {
     written_.push_back(written_attributes(primitive(part), options));
     int stride = 0;

@@ -26,7 +26,7 @@ public:
   const double* derived(std::uint32_t wedge, int first) const { return &values_[offset_[wedge - first_derived_] + first]; }
 
   bool is_derived(std::uint32_t wedge) const { return wedge >= first_derived_; }
-  std::uint32_t point_of(std::uint32_t wedge) const { return is_derived(wedge) ? wedge_of(wedge).point : soup_.wedge_point[wedge]; }
+  std::uint32_t point_of(std::uint32_t wedge) const { return wedge < soup_.wedge_point.size() ? soup_.wedge_point[wedge] : wedge_of(wedge).point; }
 
   /// Derived wedges that are drawn, by part, ascending.
   const std::vector<std::uint32_t>& derived_of(std::uint32_t part) const { return derived_of_[part]; }

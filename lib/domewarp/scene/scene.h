@@ -29,11 +29,13 @@ struct Primitive {
   std::vector<Attribute> attributes;  ///< each n x components
   std::vector<std::uint32_t> indices; ///< 1, 2 or 3 per element, every one < n
   bool keeps_order = false;           ///< vertices and triangles stand in the order of the file they come from, some left out
+  std::string extras = {};            ///< what the file says beyond glTF, as JSON text, empty when absent; so below
 };
 
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  std::string extras = {};
 };
 
 /// One drawing of a mesh: a node of the glTF file (an object that is drawn), with its transformation to world space.
@@ -42,6 +44,7 @@ struct Instance {
   std::string name;
   int mesh = 0;
   Mat4 world = Mat4(1);
+  std::string extras = {};       ///< of the node
 };
 
 /// A camera node. It looks along the -z axis of `world`, y up.
@@ -75,12 +78,14 @@ struct Image {
   std::string mime;              ///< image/png, image/jpeg, image/webp, ...
   std::string uri;               ///< as the source file spells it (percent-encoded), relative to the source file
   std::vector<std::uint8_t> bytes;
+  std::string extras = {};
 };
 
 /// Wrap and filter are glTF's numbers (10497 repeat, 33071 clamp, 33648 mirror; 9728 nearest, 9729 linear, ...; 0 unset).
 struct Sampler {
   int wrap_s = 10497, wrap_t = 10497;
   int mag_filter = 0, min_filter = 0;
+  std::string extras = {};
 };
 
 struct Texture {
@@ -129,6 +134,10 @@ struct Scene {
   std::string copyright;         ///< asset.copyright
   std::size_t animations = 0;    ///< of the source file, of which the scene shows one moment
   std::string extras;            ///< asset.extras.domewarp as JSON text, empty when absent
+  std::string asset_extras;      ///< the rest of asset.extras, an object
+  std::string scene_extras;      ///< of the scene that is drawn
+  std::string root_extras;       ///< of the file
+  std::vector<std::string> dropped_extras;     ///< what else has extras, which are not carried through: "cameras", "skins", ...
   std::vector<std::string> dropped_extensions; ///< named in the source file, neither understood nor carried through
   std::vector<std::string> warnings;           ///< one sentence each
 };

@@ -38,11 +38,22 @@ TEST(ConvertMethod, AutomaticGoesByTheNumberOfVerticesAndSaysSo) {
   const nlohmann::json few = report_of(triangle(), Method::automatic);
   EXPECT_EQ(few["method"]["asked"], "auto");
   EXPECT_EQ(few["method"]["used"], "direct");
-  EXPECT_EQ(few["method"]["expected_points"], 30);
+  EXPECT_EQ(few["method"]["expected_points"], 128) << "64 rows, half a pixel";
   EXPECT_EQ(few["surface"]["branches"][0]["method_reason"], to_string(TableReason::few_points));
   const nlohmann::json many = report_of(cubes(), Method::automatic);
   EXPECT_EQ(many["method"]["used"], "lut");
   EXPECT_EQ(many["surface"]["branches"][0]["method_reason"], to_string(TableReason::used));
+}
+
+TEST(ConvertMethod, ExpectsAsManyPointsAsTheViewNeedsPieces) {
+  ConvertOptions options;
+  options.raster = {4096, 4096};
+  EXPECT_EQ(expected_points(triangle(), options), 8192u);
+  EXPECT_GE(expected_points(cubes(), options), 10 * count_vertices(cubes()));
+  options.refine.subdivision = Subdivision::isotropic;
+  EXPECT_EQ(expected_points(triangle(), options), 30u);
+  options.refine.subdivision = Subdivision::none;
+  EXPECT_EQ(expected_points(triangle(), options), 3u);
 }
 
 TEST(ConvertMethod, IsAsAskedFor) {

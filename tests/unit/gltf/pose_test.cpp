@@ -124,5 +124,17 @@ TEST(Pose, MultipliesInstancesOut) {
   EXPECT_NE(refusal(file).find("instances"), std::string::npos);
 }
 
+TEST(Pose, RefusesInstancesBeyondSinglePrecisionByName) {
+  GltfFile file = triangle_file();
+  file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  file.root["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
+  file.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"SCALE", file.add(std::vector<float>{1, 1, 1, 1e20F, 1, 1}, "VEC3")}};
+  EXPECT_NE(refusal(file).find("nodes[0].EXT_mesh_gpu_instancing: has a world matrix beyond what single precision holds at instance 1"), std::string::npos)
+      << refusal(file);
+  file.root["nodes"][0]["scale"] = {1, 1, 1};
+  EXPECT_EQ(file.read().instances.size(), 2u);
+}
+
 } // namespace
 } // namespace domewarp::test

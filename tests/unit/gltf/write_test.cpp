@@ -340,5 +340,33 @@ TEST(Write, DoesNotOverwriteAnotherImage) {
   EXPECT_EQ(read_scene(folder / "out.gltf").images[0].bytes, tiny_png());
 }
 
+TEST(Write, ExtrasAreCarriedOver) {
+  GltfFile file = triangle_file();
+  const std::vector<std::uint8_t> png = tiny_png();
+  file.root["extras"] = {{"of", "root"}};
+  file.root["asset"]["extras"] = {{"title", "a"}, {"domewarp", {{"tolerance", 1}}}};
+  file.root["scenes"][0]["extras"] = {{"of", "scene"}};
+  file.root["nodes"][0]["extras"] = {{"of", "node"}};
+  file.root["meshes"][0]["extras"] = {{"of", "mesh"}, {"targetNames", {"smile"}}};
+  file.root["meshes"][0]["primitives"][0]["extras"] = 7;
+  file.root["images"] = {{{"mimeType", "image/png"}, {"bufferView", file.add_view(png.data(), png.size())}, {"extras", {{"of", "image"}}}}};
+  file.root["samplers"] = {{{"extras", {{"of", "sampler"}}}}};
+  file.root["textures"] = {{{"source", 0}, {"sampler", 0}, {"extras", {{"of", "texture"}}}}};
+  file.root["materials"] = {{{"extras", {{"of", "material"}}}, {"emissiveTexture", {{"index", 0}}}}};
+  file.root["meshes"][0]["primitives"][0]["material"] = 0;
+  file.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}, {"extras", 1}}};
+  file.add_node({{"camera", 0}, {"extras", {{"of", "a node without a mesh"}}}});
+  const Scene scene = file.read();
+  const json root = written(scene);
+  EXPECT_EQ(root["extras"]["of"], "root");
+  EXPECT_EQ(root["asset"]["extras"], (json{{"title", "a"}, {"domewarp", {{"tolerance", 1}}}}));
+  EXPECT_EQ(root["scenes"][0]["extras"]["of"], "scene");
+  EXPECT_EQ(root["nodes"][0]["extras"]["of"], "node");
+  EXPECT_EQ(root["meshes"][0]["extras"], (json{{"of", "mesh"}})) << "targets are posed, their names mean nothing any more";
+  EXPECT_EQ(root["meshes"][0]["primitives"][0]["extras"], 7);
+  for (const char* list : {"image", "sampler", "texture", "material"}) EXPECT_EQ(root[std::string(list) + "s"][0]["extras"]["of"], list);
+  EXPECT_EQ(scene.dropped_extras, (std::vector<std::string>{"cameras", "nodes"}));
+}
+
 } // namespace
 } // namespace domewarp::test

@@ -96,6 +96,7 @@ TEST(PointTree, FindsWhatBruteForceFinds) {
     std::vector<std::uint32_t> found, expected;
     tree.visit_near_segment(a, b, 0.05, [&](std::uint32_t id) {
       if (is_near(id)) found.push_back(id);
+      return true;
     });
     std::copy_if(ids.begin(), ids.end(), std::back_inserter(expected), is_near);
     std::sort(found.begin(), found.end());
@@ -175,13 +176,37 @@ TEST(Topology, OpenEdgesAreThoseOfOneFace) {
   std::vector<std::array<std::uint32_t, 2>> expected, got;
   for (const MeshTopology::Edge& edge : all.edges)
     if (edge.faces == 1) expected.push_back({edge.a, edge.b});
-  const std::vector<MeshTopology::Edge> open = find_open_edges(5, soup);
+  const std::vector<MeshTopology::Edge> open = find_open_edges(5, soup.size(), [&](std::size_t f) { return soup[f]; });
   for (const MeshTopology::Edge& edge : open) got.push_back({edge.a, edge.b});
   EXPECT_EQ(got, expected);
   EXPECT_EQ(got.size(), 4u);
   ASSERT_NE(find_edge(open, 2, 0), nullptr);
   EXPECT_EQ(find_edge(open, 2, 0)->b, 2u);
   EXPECT_EQ(find_edge(open, 1, 2), nullptr) << "an inner edge";
+}
+
+TEST(Topology, OpenEdgesOfAnyTrianglesAreThoseThatTheWholeTopologyLists) {
+  std::mt19937 random(7);
+  for (const std::uint32_t points : {5u, 40u, 3000u}) {
+    std::uniform_int_distribution<std::uint32_t> draw(0, points - 1);
+    std::vector<Triangle> soup;
+    while (soup.size() < (points == 40 ? 300u : 40000u)) { // windings as they come: edges of 1, 2, 3, ... faces, passed in any directions
+      const Triangle t{draw(random), draw(random), draw(random)};
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      soup.push_back(t);
+      if (soup.size() % 3 != 0) soup.push_back({t[2], t[1], draw(random) == t[0] ? t[0] : (std::max(t[1], t[2]) + 1) % points});
+      if (soup.back()[2] == soup.back()[0] || soup.back()[2] == soup.back()[1]) soup.pop_back();
+    }
+    std::vector<std::array<std::uint32_t, 2>> expected, got;
+    for (const MeshTopology::Edge& edge : build_topology(points, soup).edges)
+      if (edge.faces == 1) expected.push_back({edge.a, edge.b});
+    for (const MeshTopology::Edge& edge : find_open_edges(points, soup.size(), [&](std::size_t f) { return soup[f]; })) {
+      EXPECT_EQ(edge.faces, 1u);
+      got.push_back({edge.a, edge.b});
+    }
+    EXPECT_EQ(got, expected) << points << " points";
+    EXPECT_EQ(expected.empty(), points == 5);
+  }
 }
 
 TEST(HalfEdges, KnowLoopsAndEulerCharacteristic) {

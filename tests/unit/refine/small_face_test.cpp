@@ -104,7 +104,8 @@ TEST(SmallFaces, AFaceThatIsWholeHasNoSideToSplit) {
     for (std::uint32_t i = 0; i < 20000; ++i) {
       const Corners corners = small_triangle(random, static_cast<int>(i), std::pow(10.0, exponent(random)));
       soup.points.insert(soup.points.end(), corners.begin(), corners.end());
-      soup.faces.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, {}, 0});
+      soup.wedge_point.insert(soup.wedge_point.end(), {3 * i, 3 * i + 1, 3 * i + 2});
+      soup.faces.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, 0});
     }
     std::vector<MappedPoint> points;
     for (const Vec3& p : soup.points) points.push_back(stage.oracle.locate(p));
@@ -113,7 +114,8 @@ TEST(SmallFaces, AFaceThatIsWholeHasNoSideToSplit) {
     EXPECT_GT(sifted.refine.size(), 500u);
     for (const WholeFace& face : sifted.whole)
       for (int k = 0; k < 3; ++k) {
-        const MappedPoint *a = &points[soup.faces[face.source].point[k]], *b = &points[soup.faces[face.source].point[(k + 1) % 3]];
+        const Triangle corner = points_of(soup, soup.faces[face.source]);
+        const MappedPoint *a = &points[corner[k]], *b = &points[corner[(k + 1) % 3]];
         if (precedes(b->eye, a->eye)) std::swap(a, b);
         EXPECT_FALSE(stage.oracle.decide(*a, *b).split);
         EXPECT_LE(face.error, 1e-4f);
