@@ -201,9 +201,16 @@ Scene refine(Scene&& scene, const View& view, const Surface& surface, const Imag
              const RefineOptions& options, RefineReport& report) {
   std::vector<Image> images = std::exchange(scene.images, {});
   Scene out = refine_and_release(scene, view, surface, map, raster, options, report, [&] {
+    std::size_t freed = 0;
     for (Mesh& mesh : scene.meshes)
-      for (Primitive& primitive : mesh.primitives)
-        if (primitive.topology == Topology::triangles) free_vector(primitive.positions), free_vector(primitive.indices);
+      for (Primitive& primitive : mesh.primitives) {
+        if (primitive.topology != Topology::triangles) continue;
+        freed += primitive.positions.size() * sizeof(Vec3f) + primitive.indices.size() * sizeof(std::uint32_t);
+        free_vector(primitive.positions);
+        free_vector(primitive.indices);
+      }
+    constexpr std::size_t worth_returning = 8 << 20; // small blocks come in handy for what follows
+    if (freed >= worth_returning) release_free_memory();
   });
   out.images = std::move(images);
   return out;
