@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -131,19 +132,20 @@ struct Judged {
   bool arbitrated = false;
 };
 
-Judged judge_pixel(const Pictures& p, const PixelJudge& judge, int column, int row, double displacement) {
+Judged judge_pixel(const Pictures& p, const PixelJudge& judge, int column, int row, double displacement,
+                   Search search = Search::quick) {
   const std::size_t i = p.index(column, row);
   if (!p.warped.object[i]) {
     if (!p.reference.object[i]) return {Verdict::background, false};
-    return {judge.judge_bare(column, row), true};
+    return {judge.judge_bare(column, row, search), true};
   }
   if (is_plainly_same(p, column, row)) return {Verdict::same, false};
   const std::uint32_t object = p.object[i] == unknown_object ? 0 : p.object[i];
   if (std::isnan(displacement)) {
     if (p.object[i] == p.reference.object[i]) return {Verdict::same, false};
-    return {judge.judge_object(column, row, object), true};
+    return {judge.judge_object(column, row, object, search), true};
   }
-  return {judge.judge_drawn(column, row, Vec3(p.warped.position[i]), object, displacement), true};
+  return {judge.judge_drawn(column, row, Vec3(p.warped.position[i]), object, displacement, search), true};
 }
 
 void judge_rows(const Pictures& p, const Screen& screen, const PixelJudge& judge, const Surface& surface,
@@ -167,6 +169,26 @@ void judge_rows(const Pictures& p, const Screen& screen, const PixelJudge& judge
     }
   });
   report.arbitrated = std::accumulate(arbitrated.begin(), arbitrated.end(), std::size_t{0});
+}
+
+/// More flaws than these are no matter of slivers and holes: they stand without a close search.
+constexpr std::size_t few_flaws = 1000;
+
+bool is_flaw(Verdict verdict) {
+  return verdict == Verdict::pinhole || verdict == Verdict::seam_pinhole || verdict == Verdict::mismatch ||
+         verdict == Verdict::seam_mismatch;
+}
+
+void judge_flaws_closely(const Pictures& p, const PixelJudge& judge, CompareReport& report) {
+  std::vector<std::size_t> flaws;
+  for (std::size_t i = 0; i < report.verdicts.size(); ++i)
+    if (is_flaw(report.verdicts[i])) flaws.push_back(i);
+  if (flaws.size() > few_flaws) return;
+  parallel_each(flaws.size(), 1, [&](std::size_t k) {
+    const std::size_t i = flaws[k], width = std::size_t(p.warped.width);
+    report.verdicts[i] = judge_pixel(p, judge, static_cast<int>(i % width), static_cast<int>(i / width),
+                                     double(report.displacement[i]), Search::close).verdict;
+  });
 }
 
 void count_verdicts(const Pictures& p, CompareReport& report) {
@@ -209,19 +231,25 @@ void find_overlaps(const Pictures& p, const Screen& screen, const PixelJudge& ju
                    CompareReport& report) {
   if (!screen.has_source) return;
   report.covers = count_covers(screen, p.warped, depth_bound);
-  std::vector<std::size_t> overlaps(std::size_t(p.warped.height), 0);
-  parallel_each(overlaps.size(), 4, [&](std::size_t line) {
-    const int row = static_cast<int>(line);
-    for (int column = 0; column < p.warped.width; ++column) {
-      const std::size_t i = p.index(column, row);
-      const bool twice = report.covers[i] > 1 && p.object[i] != unknown_object;
-      const bool overlap =
-          twice && !judge.has_triangles(column, row, p.object[i], p.warped.depth[i], report.covers[i]);
-      overlaps[line] += overlap;
-      if (!overlap) report.covers[i] = 0;
-    }
-  });
-  report.overlaps = std::accumulate(overlaps.begin(), overlaps.end(), std::size_t{0});
+  const auto keep_flawed = [&](const std::vector<std::size_t>& pixels, Search search) {
+    parallel_each(pixels.size(), 16, [&](std::size_t k) {
+      const std::size_t i = pixels[k], width = std::size_t(p.warped.width);
+      if (p.object[i] == unknown_object ||
+          judge.has_triangles(static_cast<int>(i % width), static_cast<int>(i / width), p.object[i], p.warped.depth[i], report.covers[i], search))
+        report.covers[i] = 0;
+    });
+    std::vector<std::size_t> kept;
+    std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(kept), [&](std::size_t i) { return report.covers[i] > 0; });
+    return kept;
+  };
+  std::vector<std::size_t> overlaps;
+  for (std::size_t i = 0; i < report.covers.size(); ++i) {
+    if (report.covers[i] > 1) overlaps.push_back(i);
+    else report.covers[i] = 0;
+  }
+  overlaps = keep_flawed(overlaps, Search::quick);
+  if (overlaps.size() <= few_flaws) overlaps = keep_flawed(overlaps, Search::close);
+  report.overlaps = overlaps.size();
 }
 
 /// Sums over the pixels in their order, whatever threads filled them.
@@ -288,6 +316,7 @@ CompareReport compare_frames(const Frame& reference, const Frame& warped, const 
   const PixelJudge judge(surface, raster, crossings, options.bound_px, options.depth_bound);
   CompareReport report;
   judge_rows(pictures, screen, judge, surface, map, raster, report);
+  judge_flaws_closely(pictures, judge, report);
   count_verdicts(pictures, report);
   find_overlaps(pictures, screen, judge, options.depth_bound, report);
   list_flaws(raster.width, report);

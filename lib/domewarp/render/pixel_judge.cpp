@@ -2,8 +2,8 @@
 //
 // A picture in which everything may be displaced by a bound shows, at a pixel, any surface that nothing hides somewhere
 // within the bound around the pixel. So the rays around a pixel decide: at its centre, at the place of what it shows,
-// and on two circles, the outer one with the bound as its radius. Where those find a flaw, thousands more over the whole
-// disc look for what they may have missed: a sliver, or a hole in a masked texture.
+// and on two circles, the outer one with the bound as its radius. A close search looks over
+// the whole disc for what they may have missed: a sliver, or a hole in a masked texture.
 #include "domewarp/render/pixel_judge.h"
 
 #include <algorithm>
@@ -62,9 +62,12 @@ struct PixelJudge::Probe {
 /// the bound apart.
 class PixelJudge::Probes {
  public:
-  static constexpr int outer = 16, inner = 8, few = 1 + outer + inner, spiral = 2048, count = few + spiral;
+  static constexpr int outer = 16, inner = 8, few = 1 + outer + inner, spiral = 2048;
 
-  Probes(const PixelJudge& judge, int column, int row) : judge_(judge), column_(column), row_(row) {}
+  Probes(const PixelJudge& judge, int column, int row, Search search)
+      : judge_(judge), column_(column), row_(row), count_(search == Search::close ? few + spiral : few) {}
+
+  std::size_t count() const { return count_; }
 
   /// Beyond r_max there are no crossings, and the direction is zero.
   const Probe& operator[](std::size_t i) {
@@ -72,10 +75,9 @@ class PixelJudge::Probes {
     return probes_[i];
   }
 
-  /// Whether one of the first `most` passes a test.
   template <typename Test>
-  bool any(Test&& test, std::size_t most = count) {
-    for (std::size_t i = 0; i < most; ++i)
+  bool any(Test&& test) {
+    for (std::size_t i = 0; i < count_; ++i)
       if (test((*this)[i])) return true;
     return false;
   }
@@ -102,6 +104,7 @@ class PixelJudge::Probes {
 
   const PixelJudge& judge_;
   int column_, row_;
+  std::size_t count_;
   std::deque<Probe> probes_; // references stay valid while others are traced
 };
 
@@ -138,14 +141,14 @@ bool goes_on(const Sheet& sheet, const Vec3& direction, const std::vector<Crossi
 } // namespace
 
 Verdict PixelJudge::judge_drawn(int column, int row, const Vec3& p, std::uint32_t object,
-                                double displacement_px) const {
+                                double displacement_px, Search search) const {
   const double length = glm::length(p);
   if (!(displacement_px <= bound_px_ + 1e-3) || !(length > 0)) return Verdict::mismatch;
-  Probes probes(*this, column, row);
+  Probes probes(*this, column, row, search);
   const Vec3 own = p / length;
   const std::vector<Crossing> own_crossings = crossings_(own);
   std::optional<Sheet> sheet = find_sheet(own_crossings, own, p, object);
-  for (std::size_t i = 0; i < Probes::count && !sheet; ++i)
+  for (std::size_t i = 0; i < probes.count() && !sheet; ++i)
     sheet = find_sheet(probes[i].crossings, probes[i].direction, p, object);
   if (!sheet) return Verdict::mismatch;
 
@@ -159,18 +162,15 @@ Verdict PixelJudge::judge_drawn(int column, int row, const Vec3& p, std::uint32_
     if (gap <= depth_bound_ * distance) return first.object == sheet->object ? Verdict::same : Verdict::depth_tie;
   }
   if (!is_hidden(own_crossings, length, position_rounding)) return Verdict::outline;
-  const auto shows = [&](double margin, std::size_t most) {
-    return probes.any(
-        [&](const Probe& probe) {
-          if (probe.direction == Vec3(0)) return false;
-          const double at = sheet->distance(probe.direction);
-          return at > 0 && !is_hidden(probe.crossings, at, margin);
-        },
-        most);
+  const auto shows = [&](double margin) {
+    return probes.any([&](const Probe& probe) {
+      if (probe.direction == Vec3(0)) return false;
+      const double at = sheet->distance(probe.direction);
+      return at > 0 && !is_hidden(probe.crossings, at, margin);
+    });
   };
-  if (shows(distance_rounding, Probes::few)) return Verdict::outline;
-  if (shows(depth_bound_, Probes::few)) return Verdict::depth_tie;
-  if (shows(depth_bound_, Probes::count)) return Verdict::outline;
+  if (shows(distance_rounding)) return Verdict::outline;
+  if (shows(depth_bound_)) return Verdict::depth_tie;
   // What hides it is cut off at the rim, by a chord of its own.
   if (probes.any([](const Probe& probe) { return probe.direction == Vec3(0); })) return Verdict::outline;
   for (const Crossing& crossing : centre.crossings) {
@@ -182,8 +182,8 @@ Verdict PixelJudge::judge_drawn(int column, int row, const Vec3& p, std::uint32_
   return Verdict::seam_mismatch;
 }
 
-Verdict PixelJudge::judge_object(int column, int row, std::uint32_t object) const {
-  Probes probes(*this, column, row);
+Verdict PixelJudge::judge_object(int column, int row, std::uint32_t object, Search search) const {
+  Probes probes(*this, column, row, search);
   const auto shows = [object](const Probe& probe) {
     return !probe.crossings.empty() && probe.crossings.front().object == object;
   };
@@ -191,8 +191,8 @@ Verdict PixelJudge::judge_object(int column, int row, std::uint32_t object) cons
   return probes.any(shows) ? Verdict::outline : Verdict::mismatch;
 }
 
-Verdict PixelJudge::judge_bare(int column, int row) const {
-  Probes probes(*this, column, row);
+Verdict PixelJudge::judge_bare(int column, int row, Search search) const {
+  Probes probes(*this, column, row, search);
   if (probes.any([](const Probe& probe) { return probe.crossings.empty(); })) return Verdict::outline;
   for (const Crossing& crossing : probes[0].crossings) {
     const Sheet sheet = sheet_of(crossing, probes[0].direction);
@@ -202,8 +202,9 @@ Verdict PixelJudge::judge_bare(int column, int row) const {
   return Verdict::seam_pinhole;
 }
 
-bool PixelJudge::has_triangles(int column, int row, std::uint32_t object, double distance, std::size_t count) const {
-  Probes probes(*this, column, row);
+bool PixelJudge::has_triangles(int column, int row, std::uint32_t object, double distance, std::size_t count,
+                               Search search) const {
+  Probes probes(*this, column, row, search);
   std::set<std::uint32_t> triangles;
   return probes.any([&](const Probe& probe) {
     for (const Crossing& c : probe.crossings)

@@ -22,7 +22,11 @@ enum class Verdict : std::uint8_t {
   seam_mismatch, ///< a hidden surface shows, where every piece of connected surface that hides it ends within the bound
 };
 
-/// Judges pixels by what the scene has along the rays around them.
+/// How many rays a pixel is judged by: a few, or 2048 more, evenly over the disc of the bound, that find slivers and the
+/// holes of masked textures.
+enum class Search : bool { quick, close };
+
+/// Judges pixels by what the scene has along the rays around them. A quick search may find a flaw where there is none.
 class PixelJudge {
  public:
   /// @param crossings all that is drawn of the scene along a ray, nearest first
@@ -33,17 +37,19 @@ class PixelJudge {
 
   /// A pixel where the warped picture shows the source position p (eye space) of an object of the scene, which lies
   /// `displacement_px` from its place. @param object 0 when it is unknown
-  Verdict judge_drawn(int column, int row, const Vec3& p, std::uint32_t object, double displacement_px) const;
+  Verdict judge_drawn(int column, int row, const Vec3& p, std::uint32_t object, double displacement_px,
+                      Search search = Search::quick) const;
 
   /// The same for a picture that knows the object only.
-  Verdict judge_object(int column, int row, std::uint32_t object) const;
+  Verdict judge_object(int column, int row, std::uint32_t object, Search search = Search::quick) const;
 
   /// A pixel where the warped picture shows nothing.
-  Verdict judge_bare(int column, int row) const;
+  Verdict judge_bare(int column, int row, Search search = Search::quick) const;
 
   /// Whether at least so many triangles of one object lie within the bound at about this distance: each of them may
   /// cover the pixel once.
-  bool has_triangles(int column, int row, std::uint32_t object, double distance, std::size_t count) const;
+  bool has_triangles(int column, int row, std::uint32_t object, double distance, std::size_t count,
+                     Search search = Search::quick) const;
 
  private:
   struct Probe;
