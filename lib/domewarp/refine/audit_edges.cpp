@@ -80,7 +80,7 @@ std::size_t count_t_junctions(const RefinedMesh& refined, const MeshTopology& op
 void audit_edges(const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster, const RefineOptions& options, RefineReport& report) {
   std::vector<float> errors(refined.whole.size());
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = refined.whole[i].error;
-  report.depth_error_max = std::max(report.depth_error_max, static_cast<double>(refined.whole_depth_error));
+  report.depth_error_max = std::max({report.depth_error_max, static_cast<double>(refined.whole_depth_error), refined.face_depth_error});
   MeshTopology open;
   for (const EdgeBlock& block : EdgeAudit(refined, oracle, kept_half_extent(options, raster)).run()) {
     errors.insert(errors.end(), block.errors.begin(), block.errors.end());

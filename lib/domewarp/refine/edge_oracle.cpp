@@ -57,6 +57,7 @@ EdgeOracle EdgeOracle::relaxed(double factor) const {
   oracle.options_.tolerance *= factor;
   oracle.options_.face_tolerance *= factor;
   oracle.options_.depth_tolerance *= factor;
+  oracle.options_.face_depth_tolerance *= factor;
   oracle.options_.turned_thickness *= factor;
   oracle.options_.criterion_length *= factor;
   oracle.rim_angle_ *= factor;
@@ -271,7 +272,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   if (is_good()) return decision;
 
   const double extent = middle.off / middle.weight + image_extent(a, b, middle.exact.image);
-  if (extent <= options_.tolerance) lower(extent, depth, extent * least);
+  if (extent <= options_.tolerance) decision.error = std::min(decision.error, rounded_up(extent)); // beside an end it may rise faster than any arch
   if (is_good()) return decision;
   if (has_fold()) return split_by_samples(a, b);
   decision.split = Split{0.5, vertex_at(middle)};

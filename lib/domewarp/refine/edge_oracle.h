@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "domewarp/refine/error_bound.h"
@@ -53,6 +54,13 @@ struct EdgeDecision {
 /// What an EdgeDecision tells a face of its side.
 struct SideBound {
   double middle = -1, arch = 0;
+  double depth = 0;
+};
+
+/// What judging faces took and found.
+struct FaceJudgement {
+  std::size_t evaluations = 0; ///< of the map
+  double depth_error = 0;      ///< bound over the faces found good, relative
 };
 
 /// Of an edge that is not in the mesh yet.
@@ -68,8 +76,9 @@ using EdgeCriterion = std::function<bool(const MappedPoint& a, const MappedPoint
 struct OracleOptions {
   double tolerance = 0;     ///< image units, for edges
   double face_tolerance = 0; ///< for faces, a little more: their bound can never fall below that of their sides
-  double depth_tolerance = 0; ///< relative
+  double depth_tolerance = 0; ///< relative, for edges
   Projection projection = Projection::perspective;
+  double face_depth_tolerance = std::numeric_limits<double>::infinity(); ///< relative, for faces
   EdgeCriterion criterion = {}; ///< asked when nothing else splits an edge; may be empty
   double criterion_length = 0; ///< edges whose images are not longer are not asked about, image units
   double turned_thickness = 0; ///< image units: thinner faces may appear turned over
@@ -105,20 +114,21 @@ public:
   /// @param a precedes b
   DiagonalBound diagonal(const MappedPoint& a, const MappedPoint& b) const;
 
-  /// Whether the error bound of a face, all of it, is within the tolerance.
+  /// Whether the bounds of a face's error and depth error, all of it, are within the tolerances.
   /// @param side k is between corners k and k + 1
   /// @param depth it is judged in 4^depth parts at most
-  /// @param evaluations raised by the number of times that the map was asked
-  bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, std::size_t& evaluations) const;
+  bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const;
 
   /// See ErrorBound. No edge within a figure whose second / (8 weight_low) and depth are within the tolerances is split for its error.
   EdgeBend short_segments(const ShortSegments& segments) const { return bound_.short_segments(segments); }
 
-  /// Distance between the exact image of a + l1 (b - a) + l2 (c - a) and its interpolation, image units.
+  /// Distance between the exact image of a point, barycentric `weights`, and its interpolation, image units.
   double interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
+  /// The relative error of its interpolated depth.
+  double interior_depth_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 
   /// Whether a face is within its tolerance at four points inside: for faces that no bound can prove good.
-  bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const;
+  bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, FaceJudgement& judgement) const;
 
   /// The same with every tolerance, thickness, and the least length that the criterion is asked about, times `factor`.
   EdgeOracle relaxed(double factor) const;
@@ -130,6 +140,13 @@ public:
   const OracleOptions& options() const { return options_; }
 
 private:
+  /// What is known of the parts of a face.
+  struct FaceParts {
+    Vec3 seconds;           ///< bound the second derivatives along the sides and the segments parallel to them
+    int depth = 1;          ///< each is judged in 4^(depth - 1) parts at most
+    bool has_depth = false; ///< whether the depth of the whole face is known to be good
+  };
+
   /// Bounds of what is drawn between two points: of the second derivative along, of the error, of the depth's.
   struct Piece {
     double second, error, depth;
@@ -139,8 +156,8 @@ private:
   Mapped map_point(const Vec3& eye) const;
   std::optional<Split> split_at_boundary(const MappedPoint& a, const MappedPoint& b, bool& outside) const;
   bool is_sagging_chord(const MappedPoint& a, const MappedPoint& b) const;
-  bool are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const Vec3& seconds, int depth, std::size_t& evaluations) const;
-  bool is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const;
+  bool are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const FaceParts& parts, FaceJudgement& judgement) const;
+  bool is_part_good(const std::array<DrawnPoint, 3>& corner, FaceParts parts, FaceJudgement& judgement) const;
   double image_extent(const MappedPoint& a, const MappedPoint& b, const Vec2& middle) const;
   DrawnPoint drawn(const MappedPoint& p) const;
   DrawnPoint between(const DrawnPoint& p, const DrawnPoint& q) const; ///< one evaluation

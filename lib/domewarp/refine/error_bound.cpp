@@ -230,9 +230,31 @@ Components components_of(const Vec3& v, const FaceFrame& frame) {
   return {frame.cosine * outwards + v.z * frame.sine, y * frame.cos_azimuth + (-x) * frame.sin_azimuth, frame.sine * outwards + (-v.z) * frame.cosine};
 }
 
+// With x = sum m_i d_i and g_i the weight factors of the corners, what is drawn over what is right is (sum m_i g_i / g) / |x|.
+// 1 / |x| - 1 is convex in 1 - |x|^2 = sum m_i m_j |d_i - d_j|^2, so it is below its chord. And sum m_i g_i - g is the sum over
+// i < j of m_i m_j times the difference of two means, over segments of the triangle, of g's derivative along d_i - d_j, which
+// is g' (d_i - d_j) . e_theta / |x|: at most the range of that over the face.
+FaceDepth depth_of(const FaceDirections& face, const FaceFrame& frame, const RadialRange& r, double inverse_sag, Projection projection) {
+  FaceDepth depth;
+  const double chord = (inverse_sag - 1) / (1 - 1 / (inverse_sag * inverse_sag));
+  for (int k = 0; k < 3; ++k) depth.arch[k] = 0.25 * chord * (2 - 2 * face.cosine[k]);
+  if (projection == Projection::perspective) {
+    const double factor = inverse_sag / r.weight.low;
+    for (int k = 0; k < 3; ++k) {
+      const Range rate = Range{1, inverse_sag} * (r.weight_slope * components_of(face.unit[(k + 1) % 3] - face.unit[k], frame).along_meridian);
+      depth.arch[k] += 0.25 * (rate.high - rate.low) * factor;
+    }
+    depth.jump = r.weight_jump * factor;
+    depth.weights = r.weight.high / r.weight.low;
+    if (!(depth.weights < infinity)) return {Vec3(0), infinity, 1};
+  }
+  depth.arch *= 1 + slack;
+  return depth;
+}
+
 } // namespace
 
-Vec3 ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3& weights) const {
+FaceBend ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3& weights, bool with_depth) const {
   const FaceDirections face = face_directions(corner);
   const FaceFrame frame = face_frame(corner, face);
   const RadialRange r = ranges_.over(frame.u_low, frame.u_high);
@@ -244,7 +266,8 @@ Vec3 ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3&
   const Range inverse{std::min({inverse_rho[0], inverse_rho[1], inverse_rho[2]}), inverse_sag * std::max({inverse_rho[0], inverse_rho[1], inverse_rho[2]})};
   const Range speed{std::min({at.x, at.y, at.z}), inverse_sag * std::max({at.x, at.y, at.z})}; // W / rho
   const Range scale{speed.low * inverse.low, speed.high * inverse.high};
-  Vec3 second;
+  FaceBend bend;
+  if (with_depth) bend.depth = depth_of(face, frame, r, inverse_sag, projection_);
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
     const Vec3 v = corner[next]->eye - corner[k]->eye;
@@ -256,9 +279,9 @@ Vec3 ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3&
     const Range sideways = scaled({2 * scale.low, 2 * scale.high}, r.twist * (along_meridian * across)) + change * (r.factor * across);
     const double fastest = magnitude(along_meridian), kink = r.slope_jump > 0 ? 2 * fastest * fastest * scale.high * r.slope_jump : 0;
     const double bound = norm(magnitude(radial), magnitude(sideways)) + kink;
-    second[k] = bound < infinity ? bound * (1 + slack) : infinity;
+    bend.second[k] = bound < infinity ? bound * (1 + slack) : infinity;
   }
-  return second;
+  return bend;
 }
 
 namespace {
@@ -282,6 +305,12 @@ double peak_face(const Vec3& at, const Vec3& arch) {
   const double s = (x * r - y * q) / determinant, t = (y * p - x * q) / determinant, u = 1 - s - t;
   if (!(s > 0 && t > 0 && u > 0)) return peak;
   return std::max(peak, s * at.x + t * at.y + u * at.z + 4 * (s * t * arch.x + t * u * arch.y + u * s * arch.z));
+}
+
+// The linear weights over those that are right at the corners are a mean of 1 + at_i with the shares of weights.
+double peak_depth(const Vec3& at, const FaceDepth& depth) {
+  const double peak = peak_face(at * depth.weights, depth.arch) + depth.jump;
+  return peak < infinity ? peak * (1 + peak) : infinity;
 }
 
 double peak_error(double at_a, double at_b, double second, double wa, double wb) {

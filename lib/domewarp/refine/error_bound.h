@@ -36,6 +36,21 @@ struct EdgeBend {
   double depth = 0;  ///< of the relative error of the interpolated depth
 };
 
+/// What interpolates the depth of a face whose corners are right. With m the shares of the corners' unit directions in a
+/// point's, a relative error is at most 4 (m1 m2 arch.x + m2 m3 arch.y + m3 m1 arch.z) + jump.
+struct FaceDepth {
+  Vec3 arch = Vec3(0);
+  double jump = 0;
+  double weights = 1; ///< the largest weight factor g over the smallest: by how much shares of weights exceed those of directions
+};
+
+/// Suprema over one face.
+struct FaceBend {
+  Vec3 second = Vec3(0); ///< of |D^2 (W I)[v, v]| for its sides v (k from corner k to k + 1): of the second derivative along every
+                         ///< segment within it that is parallel to that side and as long; a quarter where it is half as long
+  FaceDepth depth;       ///< if asked for
+};
+
 /// Segments between points of a small figure, a segment or a triangle.
 struct ShortSegments {
   double angle = 0;                         ///< that each of them takes up at most, see small_angle
@@ -69,9 +84,7 @@ public:
   /// @param wa,wb weights at the ends
   EdgeBend edge(const Direction& a, const Direction& b, double wa, double wb) const;
 
-  /// Suprema over a face of |D^2 (W I)[v, v]| for its sides v (k from corner k to k + 1): of the second derivative along every
-  /// segment within it that is parallel to that side and as long; a quarter where it is half as long.
-  Vec3 face(const std::array<const Direction*, 3>& corner, const Vec3& weights) const;
+  FaceBend face(const std::array<const Direction*, 3>& corner, const Vec3& weights, bool with_depth) const;
 
   /// Bounds of every segment between two points of the figure, its weights linear: not as sharp as edge(), but in a fraction
   /// of the time. A figure within another never has larger bounds than that, up to rounding. Infinite when it is not small.
@@ -89,5 +102,8 @@ double peak_error(double at_a, double at_b, double second, double wa, double wb)
 /// Largest value over the triangle, l barycentric, of l1 at.x + l2 at.y + l3 at.z + 4 (l1 l2 arch.x + l2 l3 arch.y +
 /// l3 l1 arch.z): the error bound of a face whose corners are off by `at` and whose sides have such arches.
 double peak_face(const Vec3& at, const Vec3& arch);
+
+/// The bound of a face's relative depth error where its corners are off by `at` already.
+double peak_depth(const Vec3& at, const FaceDepth& depth);
 
 } // namespace domewarp

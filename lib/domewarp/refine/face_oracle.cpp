@@ -2,6 +2,7 @@
 // The part of the oracle that judges faces.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -20,18 +21,20 @@ double lowest_of(const Vec3& v) { return v[lowest(v)]; }
 
 } // namespace
 
-bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, std::size_t& evaluations) const {
+bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, FaceJudgement& judgement) const {
   constexpr double third = 1.0 / 3.0;
   for (const Vec3& weights : {Vec3(third), Vec3(0.5, 0.25, 0.25), Vec3(0.25, 0.5, 0.25), Vec3(0.25, 0.25, 0.5)}) {
-    ++evaluations;
-    if (interior_error(a, b, c, weights) > options_.tolerance) return false;
+    ++judgement.evaluations;
+    const double depth = interior_depth_error(a, b, c, weights);
+    if (interior_error(a, b, c, weights) > options_.tolerance || depth > options_.face_depth_tolerance) return false;
+    judgement.depth_error = std::max(judgement.depth_error, depth);
   }
   return true;
 }
 
 // Two sides have arches, and on every segment parallel to the third the second derivative is that along it. Three such
 // bounds are open; the side with the lowest arch promises the least.
-bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, std::size_t& evaluations) const {
+bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const {
   std::array<int, 3> order{0, 1, 2}; // nothing may depend on how the face is stored
   const auto sort_two = [&](int i, int j) {
     if (precedes(corner[order[j]]->eye, corner[order[i]]->eye)) std::swap(order[i], order[j]);
@@ -49,68 +52,84 @@ bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const 
     weights[i] = sorted[i]->mapped.weight;
     arches[i] = bound[i].arch;
   }
-  const Vec3 seconds = bound_.face({sorted[0], sorted[1], sorted[2]}, weights);
+  const FaceBend bend = bound_.face({sorted[0], sorted[1], sorted[2]}, weights, true);
+  const double depth_error = peak_depth(Vec3(0), bend.depth);
+  const bool has_depth = depth_error <= options_.face_depth_tolerance;
+  if (has_depth) judgement.depth_error = std::max(judgement.depth_error, depth_error);
   const int k = lowest(arches);
-  arches[k] = seconds[k] / (8 * lowest_of(weights));
-  if (peak_face(Vec3(0), arches) <= options_.face_tolerance) return true;
+  arches[k] = bend.second[k] / (8 * lowest_of(weights));
+  if (has_depth && peak_face(Vec3(0), arches) <= options_.face_tolerance) return true;
 
   std::array<DrawnPoint, 3> drawn_corner, middle;
   for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*sorted[i]);
   for (int i = 0; i < 3; ++i) {
     const DrawnPoint &p = drawn_corner[i], &q = drawn_corner[(i + 1) % 3];
-    const double known = bound[i].middle;
-    middle[i] = known < 0 ? between(p, q) : halfway(p, q);
-    if (known >= 0) middle[i].off = known * middle[i].weight;
-    evaluations += known < 0;
+    const bool is_known = bound[i].middle >= 0;
+    middle[i] = is_known ? halfway(p, q) : between(p, q);
+    if (is_known) middle[i].off = bound[i].middle * middle[i].weight;
+    if (is_known) middle[i].depth_off = bound[i].depth;
+    judgement.evaluations += !is_known;
   }
-  return are_parts_good(drawn_corner, middle, seconds, depth, evaluations);
+  return are_parts_good(drawn_corner, middle, {0.25 * bend.second, depth, has_depth}, judgement);
 }
 
 // What the middles of the sides are off by is known; the bounds of the four parts cover the rest. Side k of each part is
 // parallel to side k of the whole and half as long.
-bool EdgeOracle::are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const Vec3& seconds, int depth,
-                                std::size_t& evaluations) const {
+bool EdgeOracle::are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const FaceParts& parts,
+                                FaceJudgement& judgement) const {
   for (const DrawnPoint& m : middle)
-    if (m.off > options_.face_tolerance * m.weight) return false;
-  if (!is_part_good({middle[1], middle[2], middle[0]}, 0.25 * seconds, depth, evaluations)) return false;
+    if (m.off > options_.face_tolerance * m.weight || (!parts.has_depth && m.depth_off > options_.face_depth_tolerance)) return false;
+  if (!is_part_good({middle[1], middle[2], middle[0]}, parts, judgement)) return false;
   for (int k = 0; k < 3; ++k) {
     std::array<DrawnPoint, 3> part;
     part[k] = corner[k];
     part[(k + 1) % 3] = middle[k];
     part[(k + 2) % 3] = middle[(k + 2) % 3];
-    if (!is_part_good(part, 0.25 * seconds, depth, evaluations)) return false;
+    if (!is_part_good(part, parts, judgement)) return false;
   }
   return true;
 }
 
 // In the order of their cost: the bounds of what it is a part of, its own, those of its sides, and those of its parts.
-/// @param seconds bounds of the second derivatives along the sides and the segments parallel to them
-bool EdgeOracle::is_part_good(const std::array<DrawnPoint, 3>& corner, const Vec3& seconds, int depth, std::size_t& evaluations) const {
+bool EdgeOracle::is_part_good(const std::array<DrawnPoint, 3>& corner, FaceParts parts, FaceJudgement& judgement) const {
   const Vec3 weights(corner[0].weight, corner[1].weight, corner[2].weight);
   const double least = lowest_of(weights);
   const Vec3 at = Vec3(corner[0].off, corner[1].off, corner[2].off) / least;
   const auto is_enough = [&](const Vec3& bounds) { return peak_face(at, bounds / (8 * least)) <= options_.face_tolerance; };
-  if (is_enough(seconds)) return true;
-  const Vec3 own = glm::min(seconds, bound_.face({&corner[0], &corner[1], &corner[2]}, weights));
-  if (is_enough(own)) return true;
+  if (parts.has_depth && is_enough(parts.seconds)) return true;
+  const FaceBend bend = bound_.face({&corner[0], &corner[1], &corner[2]}, weights, !parts.has_depth);
+  if (!parts.has_depth) {
+    const double depth_error = peak_depth(Vec3(corner[0].depth_off, corner[1].depth_off, corner[2].depth_off), bend.depth);
+    parts.has_depth = depth_error <= options_.face_depth_tolerance;
+    if (parts.has_depth) judgement.depth_error = std::max(judgement.depth_error, depth_error);
+  }
+  const Vec3 own = glm::min(parts.seconds, bend.second);
+  if (parts.has_depth && is_enough(own)) return true;
   const int k = lowest(own);
   Vec3 sharper = own;
   for (const int i : {(k + 1) % 3, (k + 2) % 3}) {
     const DrawnPoint &p = corner[i], &q = corner[(i + 1) % 3];
     sharper[i] = std::min(own[i], bound_.edge(p, q, p.weight, q.weight).second);
   }
-  if (is_enough(sharper)) return true;
-  if (depth == 1) return false;
+  if (parts.has_depth && is_enough(sharper)) return true;
+  if (parts.depth == 1) return false;
   std::array<DrawnPoint, 3> middle;
   for (int i = 0; i < 3; ++i) middle[i] = between(corner[i], corner[(i + 1) % 3]);
-  evaluations += 3;
-  return are_parts_good(corner, middle, own, depth - 1, evaluations);
+  judgement.evaluations += 3;
+  return are_parts_good(corner, middle, {0.25 * own, parts.depth - 1, parts.has_depth}, judgement);
 }
 
 double EdgeOracle::interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {
   const Vec3 drawn = homogeneous(a.mapped) * weights.x + homogeneous(b.mapped) * weights.y + homogeneous(c.mapped) * weights.z;
   const Mapped exact = map_point(a.eye * weights.x + b.eye * weights.y + c.eye * weights.z);
   return glm::length(dehomogenise(drawn) - exact.image);
+}
+
+double EdgeOracle::interior_depth_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {
+  const Vec3 eye = a.eye * weights.x + b.eye * weights.y + c.eye * weights.z;
+  const bool is_perspective = options_.projection == Projection::perspective;
+  const Vec3 corner = is_perspective ? Vec3(a.mapped.weight, b.mapped.weight, c.mapped.weight) : Vec3(a.rho, b.rho, c.rho);
+  return std::abs(glm::dot(corner, weights) / (is_perspective ? map_point(eye).weight : glm::length(eye)) - 1);
 }
 
 } // namespace domewarp

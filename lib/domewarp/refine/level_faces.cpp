@@ -9,6 +9,7 @@
 
 #include "domewarp/core/parallel.h"
 #include "domewarp/core/rounding.h"
+#include "domewarp/mesh/weld.h"
 #include "domewarp/refine/level_state.h"
 #include "domewarp/refine/pattern_choice.h"
 
@@ -33,7 +34,7 @@ struct FaceBlock {
   std::vector<MappedPoint> points;                 ///< inserted inside faces
   std::vector<Wedge> wedges;
   std::size_t clipped = 0, off_picture = 0, uncertified = 0;
-  std::size_t evaluations = 0;
+  FaceJudgement judgement;
 };
 
 std::optional<Vec3> weights_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal, double area2) {
@@ -123,6 +124,13 @@ private:
       ++block_.clipped;
   }
 
+  /// Its corners in an order that does not depend on how it is stored, so that neither does rounding.
+  std::array<int, 3> in_order(const RefinedFace& face) const {
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int p, int q) { return precedes(corner(face, p).eye, corner(face, q).eye); });
+    return order;
+  }
+
   bool is_well_inside(const RefinedFace& face) const {
     const MappedPoint &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
     const auto length2 = [](const Vec3& p, const Vec3& q) { return glm::dot(q - p, q - p); };
@@ -133,7 +141,8 @@ private:
   /// pierces it although it is on the other side of a cone, where it comes nearest to the eye although that is inside
   /// the near sphere, or at the centroid when the interior is farther off than the edges.
   std::optional<Vec3> inner_vertex(const RefinedFace& face, int hidden_by) {
-    const Vec3 a = corner(face, 0).eye, b = corner(face, 1).eye, c = corner(face, 2).eye;
+    const std::array<int, 3> order = in_order(face);
+    const Vec3 a = corner(face, order[0]).eye, b = corner(face, order[1]).eye, c = corner(face, order[2]).eye;
     const Vec3 normal = glm::cross(b - a, c - a);
     const double area2 = glm::dot(normal, normal);
     const auto& boundaries = oracle_.region().boundaries;
@@ -146,7 +155,11 @@ private:
       const Vec3 hit = is_sphere ? normal * distance : Vec3(0, 0, distance);
       const double side = signed_distance(boundaries[i], hit);
       if (hidden_by < 0 ? side >= 0 : side <= 0) continue;
-      if (const auto weights = weights_inside(a, b, c, hit, normal, area2)) return weights;
+      const auto weights = weights_inside(a, b, c, hit, normal, area2);
+      if (!weights) continue;
+      Vec3 stored;
+      for (int k = 0; k < 3; ++k) stored[order[k]] = (*weights)[k];
+      return stored;
     }
     if (hidden_by >= 0) return std::nullopt;
     return error_vertex(face);
@@ -157,22 +170,28 @@ private:
     bool certified = !oracle_.has_fold();
     for (int k = 0; k < 3; ++k) {
       const RefinedEdge& edge = mesh_.edges[face.edge[k]];
-      side[k] = {edge.middle_error, edge.arch};
+      side[k] = {edge.middle_error, edge.arch, edge.depth_error};
       certified = certified && edge.certified;
     }
     const MappedPoint &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
-    if (oracle_.is_good({&a, &b, &c}, side, first_depth + face.insertions, block_.evaluations)) return std::nullopt;
-    if ((certified && face.insertions < most_insertions) || !oracle_.looks_good(a, b, c, block_.evaluations)) return Vec3(1.0 / 3.0);
+    const double depth_before = block_.judgement.depth_error;
+    if (oracle_.is_good({&a, &b, &c}, side, first_depth + face.insertions, block_.judgement)) return std::nullopt;
+    block_.judgement.depth_error = depth_before; // what is not kept is not counted
+    if ((certified && face.insertions < most_insertions) || !oracle_.looks_good(a, b, c, block_.judgement)) {
+      block_.judgement.depth_error = depth_before;
+      return Vec3(1.0 / 3.0);
+    }
     ++block_.uncertified;
     return std::nullopt;
   }
 
   void insert(const RefinedFace& face, const Vec3& weights) {
-    const Vec3 eye = corner(face, 0).eye * weights.x + corner(face, 1).eye * weights.y + corner(face, 2).eye * weights.z;
+    Vec3 eye(0);
+    for (const int k : in_order(face)) eye += corner(face, k).eye * weights[k];
     const std::uint32_t point = local_bit | static_cast<std::uint32_t>(block_.points.size());
     const std::uint32_t wedge = local_bit | static_cast<std::uint32_t>(block_.wedges.size());
     block_.points.push_back(oracle_.locate(eye));
-    ++block_.evaluations;
+    ++block_.judgement.evaluations;
     block_.wedges.push_back({face.wedge, {weights.x, weights.y, weights.z}, point, state_.soup.faces[face.source].part});
     const std::uint32_t spoke = local_bit | static_cast<std::uint32_t>(block_.edges.size());
     for (int k = 0; k < 3; ++k) block_.edges.push_back({face.point[k], point});
@@ -239,7 +258,8 @@ void join(LevelState& state, std::vector<FaceBlock>& blocks) {
     mesh.clipped += block.clipped;
     mesh.off_picture += block.off_picture;
     mesh.uncertified_faces += block.uncertified;
-    mesh.evaluations += block.evaluations;
+    mesh.evaluations += block.judgement.evaluations;
+    mesh.face_depth_error = std::max(mesh.face_depth_error, block.judgement.depth_error);
   }
   mesh.points.resize(end.points);
   mesh.wedges.resize(end.wedges);

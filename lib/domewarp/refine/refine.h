@@ -68,7 +68,7 @@ struct RefineReport {
   std::size_t map_evaluations = 0;
   std::size_t levels = 0;            ///< of refinement, the deepest branch
   double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn; nan when nothing bounds them
-  double depth_error_max = 0;
+  double depth_error_max = 0;        ///< certified bound of the relative error of the depth of every face drawn
   std::size_t uncertified_edges = 0; ///< drawn with a bound above the tolerance (a limit stopped them) or judged by samples (folds)
   std::size_t uncertified_faces = 0; ///< judged by samples: beside folds, and slivers close to the eye
   std::size_t t_junctions_in = 0;    ///< of the source, mended

@@ -55,6 +55,7 @@ struct RefinedMesh {
   RawVector<RefinedFace> faces; ///< final and visible
   std::vector<WholeFace> whole;  ///< in the order of the soup
   float whole_depth_error = 0;   ///< bounds them all, relative
+  double face_depth_error = 0;   ///< bounds the interiors of `faces`, relative
   std::size_t clipped = 0;
   std::size_t off_picture = 0;   ///< pieces dropped before they were refined, as far outside the picture's rectangle
   std::size_t uncertified_faces = 0; ///< judged by samples

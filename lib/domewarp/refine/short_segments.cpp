@@ -26,7 +26,9 @@ double small_angle(double longest, double nearest) {
 
 // With kappa <= angle, |c| <= |W'| + W angle, |I_psi| <= max(|R'|, |K|) and |I_psipsi|^2 <= max(|A|, |B|)^2 + C^2 in the
 // terms of ErrorBound. For the depth 1 / cos(psi / 2) - 1 <= 0.126 psi^2; the interpolated g is off by at most a quarter of
-// the range of its slope x g' dpsi/dt, where |dx/dpsi| = |sin(chi)^2 cot(theta)| and dpsi/dt varies by 1 / cos(psi / 2)^2.
+// the range of its slope x g' dpsi/dt, where |dx/dpsi| = |sin(chi)^2 cot(theta)| and dpsi/dt varies by 1 / cos(psi / 2)^2. Over a
+// face x is that of a fixed direction: it changes by at most |cot(theta)| psi, and by psi^2 as the segments leave the sphere's
+// tangent plane. Faces are then off by at most 4/3 of this bound: sum m_i m_j <= 1/3 where it is 1/4 on an edge.
 EdgeBend ErrorBound::short_segments(const ShortSegments& s) const {
   const EdgeBend unknown{infinity, infinity};
   const double angle = s.angle, margin = u_margin(angle);
@@ -39,7 +41,7 @@ EdgeBend ErrorBound::short_segments(const ShortSegments& s) const {
   bound.depth = 0.126 * angle * angle;
   if (projection_ == Projection::perspective) {
     const double turn = std::min(2.0, 1.01 * angle * std::max(std::abs(cotangent(u_low)), std::abs(cotangent(u_high))));
-    const double range = 1.01 * (r.weight_slope.high - r.weight_slope.low) + magnitude(r.weight_slope) * (1.01 * turn + 0.26 * angle * angle);
+    const double range = 1.01 * (r.weight_slope.high - r.weight_slope.low) + magnitude(r.weight_slope) * (1.01 * turn + 1.27 * angle * angle);
     bound.depth += (1 + bound.depth) * 0.25 * angle * range * r.inverse_weight;
   }
   return bound.second < infinity && bound.depth < infinity ? bound : unknown;

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "domewarp/core/parallel.h"
+#include "domewarp/core/rounding.h"
 #include "domewarp/profile/half_angle.h"
 #include "domewarp/refine/flips.h"
 
@@ -65,11 +66,11 @@ public:
     const EdgeBend bend = oracle_.short_segments({angle, u_low, u_high, lightest, heaviest});
     const double error = bend.second / (8 * lightest);
     const OracleOptions& limits = oracle_.options();
-    if (!(error <= strictness * limits.tolerance && face_over_edge * error <= limits.face_tolerance && bend.depth <= strictness * limits.depth_tolerance))
+    if (!(error <= strictness * limits.tolerance && face_over_edge * error <= limits.face_tolerance && bend.depth <= strictness * limits.depth_tolerance &&
+          face_over_edge * bend.depth <= strictness * limits.face_depth_tolerance))
       return {};
     if (options_.cull != nullptr && !options_.cull->straddles(a, b, c)) return {FaceFate::drop, 0, 0, true};
-    constexpr float up = 1 + 1e-7f;
-    return {FaceFate::whole, static_cast<float>(error) * up, static_cast<float>(bend.depth) * up};
+    return {FaceFate::whole, rounded_up(error), rounded_up(face_over_edge * bend.depth)};
   }
 
 private:

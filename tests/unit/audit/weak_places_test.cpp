@@ -201,8 +201,11 @@ TEST(WeakPlaces, PermutedFacesTurnedCornersAndReversedWindingGiveTheSameTriangle
   const std::uint32_t seed = 1701;
   std::mt19937 random(seed);
   const std::vector<Vec3f> corners = cluttered_room();
-  for (const SurfaceOptions& surface : {curve("1-r^2"), lens(Lens::equidistant, 270)}) {
-    const TriangleSet expected = triangle_set(convert_shape(triangles_scene(corners), surface, {}, raster).scene);
+  for (const auto& [surface, projection] : {std::pair(curve("1-r^2"), Projection::perspective), std::pair(lens(Lens::equidistant, 270), Projection::perspective),
+                                            std::pair(curve("1-r^2"), Projection::orthographic)}) {
+    RefineOptions options;
+    options.projection = projection;
+    const TriangleSet expected = triangle_set(convert_shape(triangles_scene(corners), surface, options, raster).scene);
     for (int trial = 0; trial < 4; ++trial) {
       std::vector<std::size_t> order(corners.size() / 3);
       for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -213,7 +216,7 @@ TEST(WeakPlaces, PermutedFacesTurnedCornersAndReversedWindingGiveTheSameTriangle
         const bool reversed = random() % 2 == 0;
         for (std::size_t k = 0; k < 3; ++k) shuffled.push_back(corners[3 * face + (turn + (reversed ? 3 - k : k)) % 3]);
       }
-      EXPECT_EQ(triangle_set(convert_shape(triangles_scene(shuffled), surface, {}, raster).scene), expected) << "trial " << trial << ", seed " << seed;
+      EXPECT_EQ(triangle_set(convert_shape(triangles_scene(shuffled), surface, options, raster).scene), expected) << "trial " << trial << ", seed " << seed;
     }
   }
 }

@@ -96,18 +96,22 @@ std::optional<SettledFace> settle(const EdgeOracle& oracle, const std::array<Vec
     const bool in_order = precedes(a.eye, b.eye);
     const EdgeDecision decision = oracle.decide(in_order ? a : b, in_order ? b : a);
     if (decision.split || !decision.certified) return std::nullopt;
-    face.side[k] = {decision.middle, decision.arch};
+    face.side[k] = {decision.middle, decision.arch, decision.depth_error};
   }
   return face;
 }
 
-double sampled_face_error(const EdgeOracle& oracle, const SettledFace& face) {
+/// The largest error of 91 points of the face, of its image or its depth, over the tolerance.
+double sampled_face_error(const EdgeOracle& oracle, const SettledFace& face, bool of_depth) {
   constexpr int parts = 12;
+  const auto& [a, b, c] = face.corner;
   double worst = 0;
   for (int i = 0; i <= parts; ++i)
-    for (int j = 0; i + j <= parts; ++j)
-      worst = std::max(worst, oracle.interior_error(face.corner[0], face.corner[1], face.corner[2], Vec3(i, j, parts - i - j) / double(parts)));
-  return worst;
+    for (int j = 0; i + j <= parts; ++j) {
+      const Vec3 weights = Vec3(i, j, parts - i - j) / double(parts);
+      worst = std::max(worst, of_depth ? oracle.interior_depth_error(a, b, c, weights) : oracle.interior_error(a, b, c, weights));
+    }
+  return worst / (of_depth ? oracle.options().face_depth_tolerance : oracle.options().face_tolerance);
 }
 
 struct FaceTrial {
@@ -115,8 +119,10 @@ struct FaceTrial {
   double worst = 0; ///< true error over tolerance
 };
 
+enum class Judged { image, depth };
+
 /// Shrinks every triangle until it is just accepted, where a bound that is too small shows.
-FaceTrial try_faces(const EdgeOracle& oracle, int count, bool ask_face) {
+FaceTrial try_faces(const EdgeOracle& oracle, int count, bool ask_face, Judged judged = Judged::image) {
   std::mt19937 random(20012);
   FaceTrial trial;
   for (int i = 0; i < count; ++i) {
@@ -126,9 +132,9 @@ FaceTrial try_faces(const EdgeOracle& oracle, int count, bool ask_face) {
       const std::array<Vec3, 3> eye = adversarial_face(random, i, size);
       const std::optional<SettledFace> face = settle(oracle, eye);
       if (!face) continue;
-      std::size_t evaluations = 0;
+      FaceJudgement judgement;
       const auto& [a, b, c] = face->corner;
-      if (ask_face && !oracle.is_good({&a, &b, &c}, face->side, 2, evaluations)) continue;
+      if (ask_face && !oracle.is_good({&a, &b, &c}, face->side, 2, judgement)) continue;
       // A plane that the rim or the axis beyond it pierces is cut elsewhere (clipping), so only faces all inside count.
       bool inside = true;
       for (int s = 0; s < 66; ++s) {
@@ -136,9 +142,10 @@ FaceTrial try_faces(const EdgeOracle& oracle, int count, bool ask_face) {
         for (const std::int8_t side : oracle.locate(eye[0] * u + eye[1] * v + eye[2] * (1 - u - v)).sides) inside = inside && side >= 0;
       }
       if (!inside) continue;
-      const double error = sampled_face_error(oracle, *face) / oracle.options().face_tolerance;
+      const double error = sampled_face_error(oracle, *face, judged == Judged::depth);
       ++trial.tested;
       trial.violations += error > 1 + 1e-6;
+      if (ask_face && judged == Judged::depth) trial.violations += error * oracle.options().face_depth_tolerance > judgement.depth_error * (1 + 1e-9) + 1e-12;
       trial.worst = std::max(trial.worst, error);
       break;
     }
@@ -156,6 +163,66 @@ TEST(FaceBound, CoversTheSampledErrorOfAdversarialFaces) {
     EXPECT_EQ(trial.violations, 0) << name(c) << ": worst is " << trial.worst << " of the tolerance";
     EXPECT_GT(trial.worst, 0.5) << name(c) << ": these faces try nothing";
     std::printf("%s: %d faces, worst %.3f of the tolerance\n", name(c).c_str(), trial.tested, trial.worst);
+  }
+}
+
+TEST(FaceBound, CoversTheSampledDepthOfAdversarialFaces) {
+  for (const Case& c : cases()) {
+    const Surface surface(c.surface, std::sqrt(2.0));
+    const ImageMap map = make_image_map(surface, Method::automatic);
+    const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1, 1.03, 2e-3, c.projection, 2e-3});
+    const FaceTrial trial = try_faces(oracle, trials(10'000), true, Judged::depth);
+    EXPECT_GT(trial.tested, trials(10'000) / 4) << name(c);
+    EXPECT_EQ(trial.violations, 0) << name(c) << ": worst is " << trial.worst << " of the tolerance";
+    EXPECT_GT(trial.worst, 0.5) << name(c) << ": these faces try nothing";
+    std::printf("%s: %d faces, worst %.3f of the depth tolerance\n", name(c).c_str(), trial.tested, trial.worst);
+  }
+}
+
+TEST(FaceBound, FacesWhoseSidesAloneAreGoodDoViolateTheDepthTolerance) {
+  const Surface surface(curve("1-r^2"), std::sqrt(2.0));
+  const ImageMap map = make_image_map(surface, Method::automatic);
+  const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), {1, 1, 2e-3, Projection::orthographic, 2e-3});
+  EXPECT_GT(try_faces(oracle, 10'000, false, Judged::depth).violations, 0);
+}
+
+/// Shrinks random edges until each is just kept; what was decided must cover 63 points of it.
+TEST(EdgeOracle, TheErrorsOfWhatItKeepsCoverTheSampledOnes) {
+  std::mt19937 random(20013);
+  std::normal_distribution<double> normal;
+  for (const Case& c : cases()) {
+    const Surface surface(c.surface, std::sqrt(2.0));
+    const ImageMap map = make_image_map(surface, Method::automatic);
+    for (const OracleOptions& options : {OracleOptions{1e-3, 1e-3, 1, c.projection}, OracleOptions{1, 1, 2e-3, c.projection}}) {
+      const EdgeOracle oracle(surface, 0, map.branches[0], make_visible_region(map.branches[0].branch(), 1e-9), options);
+      int tested = 0, image = 0, arch = 0, depth = 0;
+      for (int i = 0; i < trials(10'000); ++i) {
+        const Vec3 p(normal(random), normal(random), normal(random)), along(normal(random), normal(random), normal(random));
+        for (double size = 2; size > 1e-5; size *= 0.7) {
+          const MappedPoint from = oracle.locate(p), to = oracle.locate(p + size * along);
+          bool inside = true;
+          for (int s = 0; s <= 32; ++s)
+            for (const std::int8_t side : oracle.locate(point_at(from.eye, to.eye, s / 32.0)).sides) inside = inside && side > 0;
+          if (!inside) continue;
+          const bool in_order = precedes(from.eye, to.eye);
+          const MappedPoint &a = in_order ? from : to, &b = in_order ? to : from;
+          const EdgeDecision decision = oracle.decide(a, b);
+          if (decision.split || !decision.certified) continue;
+          ++tested;
+          for (int s = 1; s < 64; ++s) {
+            const double t = s / 64.0, error = true_error(oracle, a, b, t), rounding = 1e-12;
+            image += error > decision.error * (1 + 1e-9) + rounding || error > options.tolerance * (1 + 1e-9) + rounding;
+            arch += error > 4 * t * (1 - t) * decision.arch * (1 + 1e-9) + rounding;
+            depth += oracle.interior_depth_error(a, b, a, {0.5 * (1 - t), t, 0.5 * (1 - t)}) > decision.depth_error * (1 + 1e-9) + rounding;
+          }
+          break;
+        }
+      }
+      EXPECT_GT(tested, trials(10'000) / 10) << name(c);
+      EXPECT_EQ(image, 0) << name(c);
+      EXPECT_EQ(arch, 0) << name(c);
+      EXPECT_EQ(depth, 0) << name(c);
+    }
   }
 }
 
