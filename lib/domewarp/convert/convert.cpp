@@ -161,7 +161,7 @@ Scene convert(Scene&& scene, const ConvertOptions& options, const Display& displ
 }
 
 bool is_kept(const ConvertReport& report, const ConvertOptions& options) {
-  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 &&
+  return report.refine.limits_hit.empty() && report.refine.open_edges == 0 && report.packing_turned == 0 &&
          (options.refine.subdivision != Subdivision::adaptive ||
           (report.refine.error_px_max <= options.refine.tolerance_px * (1 + 1e-6) && report.packing_px <= options.refine.tolerance_px));
 }
@@ -171,6 +171,7 @@ std::string broken_promise(const ConvertReport& report, const ConvertOptions& op
   text << "the tolerance of " << options.refine.tolerance_px << " px was not kept: certified " << report.refine.error_px_max << " px";
   if (report.packing_px > options.refine.tolerance_px) text << ", rounding in the file moves points by up to " << report.packing_px << " px more";
   if (report.refine.open_edges > 0) text << ", " << report.refine.open_edges << " open edges that the source did not have";
+  if (report.packing_turned > 0) text << ", rounding in the file leaves " << report.packing_turned << " triangles turned over";
   for (const std::string& limit : report.refine.limits_hit) text << ", stopped by " << limit;
   return text.str();
 }

@@ -53,6 +53,8 @@ struct ConvertReport {
   std::vector<std::string> dropped_extensions;
   std::vector<std::string> dropped_extras; ///< "cameras", "skins", ...: whose extras are not carried over
   double packing_px = 0;        ///< how far rounding in the written file moves a vertex at most (packing_error.h)
+  std::size_t packing_mended = 0; ///< triangles that this rounding turned over, turned back (packed_flips.h)
+  std::size_t packing_turned = 0; ///< and those that stay turned
   BakeReport baked;             ///< of Shading::bake
   double map_ms = 0;
   double hidden_ms = 0;         ///< rays of cull_hidden

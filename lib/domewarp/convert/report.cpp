@@ -106,6 +106,7 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["tolerance_px"] = options.refine.tolerance_px;
   json["error_px"] = {{"max", refine.error_px_max}, {"p99", refine.error_px_p99}, {"mean", refine.error_px_mean}};
   json["packing_px"] = report.packing_px;
+  json["packing_flips"] = {{"mended", report.packing_mended}, {"left", report.packing_turned}};
   json["depth_error_rel"] = {{"max", refine.depth_error_max}};
   json["cracks"] = cracks_json(refine, options.refine.subdivision);
   json["skipped"] = skipped_json(refine);
@@ -169,7 +170,9 @@ std::string to_text(const ConvertReport& report, const ConvertOptions& options) 
          << (depth_decides(refine, options.refine) ? " (--depth-tolerance decides here)" : "") << "\n"
          << "cracks      " << refine.open_edges << " open edges that the source did not have; " << refine.t_junctions_in
          << " T-junctions of the source mended\n";
-  if (report.packing_px > 0) text << "packing     moves points by at most " << report.packing_px << " px more\n";
+  if (report.packing_px > 0)
+    text << "packing     moves points by at most " << report.packing_px << " px more; " << report.packing_mended << " triangles turned back, " << report.packing_turned
+         << " left turned over\n";
   text << "map         " << method_text(report, options) << "\n";
   text << std::fixed << std::setprecision(0) << "time        " << report.total_ms << " ms, peak memory " << report.peak_memory_mb << " MB\n";
   for (const std::string& limit : refine.limits_hit) text << "stopped by  " << limit << "\n";

@@ -60,7 +60,7 @@ void set_quantization(draco::ExpertEncoder& encoder, int id, const Attribute& at
   if (const int bits = texcoord_bits(attribute)) encoder.SetAttributeQuantization(id, bits);
 }
 
-float range_of(const Grid& grid) {
+float range_of(const PositionGrid& grid) {
   return static_cast<float>(grid.range);
 }
 
@@ -70,7 +70,7 @@ double kept(double number) {
 }
 
 draco::Status encode(const draco::Mesh& mesh, const AttributeMap& ids, const std::vector<Attribute>& attributes,
-                     const Grid& grid, draco::EncoderBuffer& buffer) {
+                     const PositionGrid& grid, draco::EncoderBuffer& buffer) {
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
   encoder.SetSpeedOptions(5, 5);
@@ -92,8 +92,9 @@ std::vector<double> bounds(const DracoAttribute& attribute, bool high) {
 
 } // namespace
 
-Grid draco_grid(const Grid& grid) {
-  Grid result = grid;
+PositionGrid draco_grid(const PositionGrid& grid) {
+  PositionGrid result = grid;
+  result.is_draco = true;
   const auto nudge = [](double number) { return std::max(5e-7, std::abs(number) * 1e-7); };
   double excess = 0;
   for (int c = 0; c < 3; ++c) {
@@ -109,20 +110,21 @@ Grid draco_grid(const Grid& grid) {
   return result;
 }
 
-std::vector<Vec3f> snap_to_draco_grid(std::vector<Vec3f> positions, const Grid& grid) {
+GridPoint to_draco_grid(const PositionGrid& grid, const Vec3f& position) {
   draco::Quantizer quantizer;
+  quantizer.Init(range_of(grid), (1 << grid.bits) - 1);
+  const Vec3f offset = position - Vec3f(grid.origin);
+  return {quantizer(offset.x), quantizer(offset.y), quantizer(offset.z)};
+}
+
+Vec3f from_draco_grid(const PositionGrid& grid, const GridPoint& point) {
   draco::Dequantizer dequantizer;
-  const std::int32_t largest = (1 << grid.bits) - 1;
-  quantizer.Init(range_of(grid), largest);
-  dequantizer.Init(range_of(grid), largest);
-  const Vec3f origin(grid.origin);
-  for (Vec3f& position : positions)
-    for (int c = 0; c < 3; ++c) position[c] = dequantizer(quantizer(position[c] - origin[c])) + origin[c];
-  return positions;
+  dequantizer.Init(range_of(grid), (1 << grid.bits) - 1);
+  return Vec3f(dequantizer(point.x), dequantizer(point.y), dequantizer(point.z)) + Vec3f(grid.origin);
 }
 
 void compress_primitive(const std::vector<Vec3f>& positions, const std::vector<Attribute>& attributes,
-                        const std::vector<std::uint32_t>& indices, const Grid& grid, Layout& layout,
+                        const std::vector<std::uint32_t>& indices, const PositionGrid& grid, Layout& layout,
                         WrittenPrimitive& written) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(positions.size()));

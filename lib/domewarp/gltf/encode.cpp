@@ -42,27 +42,6 @@ bool is_mirrored(const Mat4& world) {
   return glm::dot(glm::cross(Vec3(world[0]), Vec3(world[1])), Vec3(world[2])) < 0;
 }
 
-/// The smallest grid over everything that is drawn, in the space of the meshes.
-Grid grid_of(const Scene& scene, int bits) {
-  Vec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
-  for (const Instance& instance : scene.instances)
-    for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(instance.mesh)].primitives)
-      for (const Vec3f& position : primitive.positions) {
-        low = glm::min(low, Vec3(position));
-        high = glm::max(high, Vec3(position));
-      }
-  Grid grid;
-  grid.bits = bits;
-  if (!(low.x <= high.x)) return grid;
-  grid.origin = low;
-  const Vec3 extent = high - low;
-  const double largest = std::max({extent.x, extent.y, extent.z});
-  if (!std::isfinite(largest))
-    throw Error(ErrorCode::output, "a position that is not finite cannot be written as glTF");
-  grid.range = largest > 0 ? largest : 1;
-  return grid;
-}
-
 class SceneWriter {
  public:
   SceneWriter(const Scene& scene, const WriteOptions& options, const Placement& placement)
@@ -71,7 +50,7 @@ class SceneWriter {
     if (options.draco && options.meshopt) throw Error(ErrorCode::usage, "--draco and --meshopt exclude each other");
     layout_.use_meshopt = options.meshopt;
     packing_ = options.draco ? Packing::draco : options.quantize ? Packing::quantized : Packing::plain;
-    grid_ = grid_for(scene, options);
+    if (packing_ != Packing::plain) grid_ = position_grid(scene, options).value();
   }
 
   EncodedScene write() {
@@ -322,7 +301,7 @@ class SceneWriter {
   Layout layout_;
   MaterialWriter materials_;
   Packing packing_ = Packing::plain;
-  Grid grid_;
+  PositionGrid grid_;
   bool uses_draco_ = false;
   json nodes_ = json::array(), meshes_ = json::array(), cameras_ = json::array(), lights_ = json::array();
   std::vector<std::size_t> roots_;
@@ -330,12 +309,6 @@ class SceneWriter {
 };
 
 } // namespace
-
-Grid grid_for(const Scene& scene, const WriteOptions& options) {
-  if (options.draco) return draco_grid(grid_of(scene, 20));
-  if (options.quantize) return grid_of(scene, 16);
-  return {Vec3(0), 1, 0};
-}
 
 EncodedScene encode_scene(const Scene& scene, const WriteOptions& options, const Placement& placement) {
   try {

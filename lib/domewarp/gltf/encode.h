@@ -33,9 +33,6 @@ struct Placement {
   std::function<std::string(std::size_t)> image_path; ///< for an image of the scene; unset: images are embedded
 };
 
-/// The grid that positions are rounded to; bits 0: none.
-Grid grid_for(const Scene& scene, const WriteOptions& options);
-
 EncodedScene encode_scene(const Scene& scene, const WriteOptions& options, const Placement& placement);
 
 /// New numbers for the things of a scene that are used, in the order of their first use.

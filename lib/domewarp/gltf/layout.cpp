@@ -91,10 +91,6 @@ int Layout::add_accessor(WrittenAccessor accessor) {
   return static_cast<int>(accessors.size() - 1);
 }
 
-double grid_step(const Grid& grid) {
-  return grid.range / (std::ldexp(1.0, grid.bits) - 1);
-}
-
 std::string type_name(int components) {
   switch (components) {
   case 1:
@@ -219,12 +215,12 @@ int add_integers(Layout& layout, const std::vector<double>& values, int componen
   return layout.add_accessor(std::move(accessor));
 }
 
-int add_grid_positions(Layout& layout, const std::vector<Vec3f>& positions, const Grid& grid) {
-  const double largest = std::ldexp(1.0, grid.bits) - 1, step = grid_step(grid);
+int add_grid_positions(Layout& layout, const std::vector<Vec3f>& positions, const PositionGrid& grid) {
   std::vector<double> values;
-  for (const Vec3f& p : positions)
-    for (int c = 0; c < 3; ++c)
-      values.push_back(std::clamp(std::round((static_cast<double>(p[c]) - grid.origin[c]) / step), 0.0, largest));
+  for (const Vec3f& p : positions) {
+    const GridPoint point = to_grid(grid, p);
+    for (int c = 0; c < 3; ++c) values.push_back(point[c]);
+  }
   return add_integers<std::uint16_t>(layout, values, 3, uint16_type, false);
 }
 
@@ -282,7 +278,7 @@ bool can_compress(const std::vector<std::uint32_t>& indices, Topology topology) 
 } // namespace
 
 WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int texcoords, Packing packing,
-                                 const Grid& grid, Layout& layout) {
+                                 const PositionGrid& grid, Layout& layout) {
   WrittenPrimitive written;
   written.material = primitive.material;
   written.mode = primitive.topology == Topology::points ? 0 : primitive.topology == Topology::lines ? 1 : 4;
@@ -300,7 +296,8 @@ WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int 
   } else {
     const bool quantized = packing == Packing::quantized;
     std::vector<Vec3f> snapped;
-    if (packing == Packing::draco) snapped = snap_to_draco_grid(primitive.positions, grid);
+    if (packing == Packing::draco) // Draco cannot hold it, but the file has one grid
+      for (const Vec3f& position : primitive.positions) snapped.push_back(Vec3f(from_grid(grid, to_grid(grid, position))));
     const std::vector<Vec3f>& positions = packing == Packing::draco ? snapped : primitive.positions;
     written.attributes.emplace_back("POSITION", quantized ? add_grid_positions(layout, positions, grid)
                                                           : add_positions(layout, positions));

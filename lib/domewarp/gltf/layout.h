@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "domewarp/core/vectors.h"
+#include "domewarp/gltf/grid.h"
 #include "domewarp/gltf/meshopt_encode.h"
 #include "domewarp/scene/scene.h"
 
@@ -61,17 +62,11 @@ class Layout {
   std::vector<WrittenAccessor> accessors;
 };
 
-/// One grid of positions for a whole file: position = origin + step * (0 .. 2^bits - 1), step = range / (2^bits - 1).
-struct Grid {
-  Vec3 origin = Vec3(0);
-  double range = 1;
-  int bits = 16;
-};
-
-double grid_step(const Grid& grid);
-
 /// The smallest grid around this one whose numbers Draco keeps: it stores its options as text with six decimals.
-Grid draco_grid(const Grid& grid);
+PositionGrid draco_grid(const PositionGrid& grid);
+
+GridPoint to_draco_grid(const PositionGrid& grid, const Vec3f& position);
+Vec3f from_draco_grid(const PositionGrid& grid, const GridPoint& point);
 
 enum class Packing { plain, quantized, draco };
 
@@ -85,15 +80,12 @@ std::vector<Attribute> writable_attributes(const Primitive& primitive);
 /// Appends a primitive that has elements. TEXCOORD sets below `texcoords` that it lacks are written as zeros.
 /// @param mirrored   swaps the winding of triangles.
 WrittenPrimitive write_primitive(const Primitive& primitive, bool mirrored, int texcoords, Packing packing,
-                                 const Grid& grid, Layout& layout);
-
-/// The positions as a decoder of `compress_primitive` will see them, for what Draco cannot hold.
-std::vector<Vec3f> snap_to_draco_grid(std::vector<Vec3f> positions, const Grid& grid);
+                                 const PositionGrid& grid, Layout& layout);
 
 /// The same with KHR_draco_mesh_compression. Degenerate triangles and vertices that no triangle uses are dropped.
 /// @param indices   triangles, not all of them degenerate.
 void compress_primitive(const std::vector<Vec3f>& positions, const std::vector<Attribute>& attributes,
-                        const std::vector<std::uint32_t>& indices, const Grid& grid, Layout& layout,
+                        const std::vector<std::uint32_t>& indices, const PositionGrid& grid, Layout& layout,
                         WrittenPrimitive& written);
 
 } // namespace domewarp::gltf

@@ -114,10 +114,10 @@ void write_separate(const Scene& scene, const fs::path& path, const WriteOptions
 } // namespace gltf
 
 double packing_error(const Scene& scene, const WriteOptions& options) {
-  const gltf::Grid grid = gltf::grid_for(scene, options);
-  if (grid.bits == 0) return 0;
-  const double largest = grid.range + glm::length(grid.origin);
-  return 0.5 * gltf::grid_step(grid) + largest * std::numeric_limits<float>::epsilon();
+  const std::optional<PositionGrid> grid = position_grid(scene, options);
+  if (!grid) return 0;
+  const double largest = grid->range + glm::length(grid->origin);
+  return 0.5 * grid_step(*grid) + largest * std::numeric_limits<float>::epsilon();
 }
 
 std::vector<std::uint8_t> encode_glb(const Scene& scene, const WriteOptions& options) {

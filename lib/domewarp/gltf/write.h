@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "domewarp/gltf/grid.h"
 #include "domewarp/scene/scene.h"
 
 namespace domewarp {
@@ -13,6 +15,7 @@ struct WriteOptions {
   bool draco = false;    ///< KHR_draco_mesh_compression
   bool quantize = false; ///< KHR_mesh_quantization; excludes `draco`
   bool meshopt = false;  ///< EXT_meshopt_compression, lossless; excludes `draco`
+  std::optional<PositionGrid> grid = {}; ///< of `draco` or `quantize`, around all positions; none: the smallest
 };
 
 /// Writes a .glb (one file) or a .gltf with NAME.bin and the image files beside it; the extension decides. What no
