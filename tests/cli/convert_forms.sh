@@ -72,7 +72,7 @@ check "the same light for 1 and 2 threads" cmp -s one.glb two.glb
 # A limit of memory: refused before it is read, refused on the way, kept.
 convert small.glb $toys --max-memory 1
 same "--max-memory below the program's own" 1 $?
-convert small.glb $toys --max-memory 33
+convert small.glb $toys --max-memory 30
 same "--max-memory below the estimate" 3 $?
 check "the need is told" grep -q 'toys.glb: needs' stderr
 convert small.glb $lit --max-memory 100
