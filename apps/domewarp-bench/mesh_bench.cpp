@@ -20,8 +20,8 @@ void count_box(const Options& options, Result& result) {
   const Raster raster = options.quick ? Raster{128, 128} : Raster{4096, 4096};
   Table counts{"mesh_counts",
                "The closed box of 12 triangles at 0.5 px of " + std::to_string(raster.height) +
-                   " rows, whole visible cone. Goal: an uncertified prototype's count (perspective, 4096 rows), 3 N* (orthographic)",
-               {{"surface", "surface"}, {"projection", "projection"}, {"triangles", "triangles"}, {"without_depth", "any depth"}, {"depth_alone", "depth alone"}, {"goal", "goal"},
+                   " rows, whole visible cone. Goal: an uncertified prototype's count (perspective, 4096 rows), 3 N* (orthographic). Plain: walls of one colour, whose insides are held to the depth alone",
+               {{"surface", "surface"}, {"projection", "projection"}, {"triangles", "triangles"}, {"without_depth", "any depth"}, {"depth_alone", "depth alone"}, {"plain", "plain"}, {"goal", "goal"},
                 {"of_goal", "of goal"}, {"lower_bound", "N*"}, {"of_lower_bound", "of N*"}, {"evaluations", "evaluations/triangle"}, {"ms", "ms"}},
                {}};
   Table errors{"mesh_errors",
@@ -47,9 +47,11 @@ void count_box(const Options& options, Result& result) {
       const auto triangles = static_cast<double>(refined.mesh.faces.size());
       RefineOptions depth_alone = refine; // what a box without texture and light would need at least
       depth_alone.tolerance_px = 1e6;
+      RefineOptions plain = refine;
+      plain.plain_tolerance_px = 64;
       const auto count = [&](const RefineOptions& o) { return static_cast<double>(refine_whole(make_soup(box(), View{}, {}), display, raster, o).mesh.faces.size()); };
       const double none = std::numeric_limits<double>::quiet_NaN(), goal = options.quick ? none : perspective ? prototype[s] : 3 * least;
-      counts.rows.push_back({display.name, name, triangles, count(any_depth), count(depth_alone), goal, triangles / goal, perspective ? none : least, perspective ? none : triangles / least,
+      counts.rows.push_back({display.name, name, triangles, count(any_depth), count(depth_alone), count(plain), goal, triangles / goal, perspective ? none : least, perspective ? none : triangles / least,
                              static_cast<double>(refined.mesh.evaluations) / triangles, 1000 * refined.seconds});
       const Judged judged = judge(refined, display, raster, refine);
       errors.rows.push_back({display.name, name, double(judged.edges), judged.certified, judged.edge_error, judged.face_error, judged.median_ratio,

@@ -94,7 +94,8 @@ Refined refine_whole(Soup soup, const Display& display, const Raster& raster, co
   const BranchMap& branch = display.map.branches.front();
   const EdgeOracle oracle(display.surface, 0, branch, make_visible_region(branch.branch(), 1e-5 * extent), oracle_options(options, raster));
   Refined refined{std::move(soup), {}, 0};
-  refined.seconds = seconds([&] { refined.mesh = refine_levels(refined.soup, oracle, {options.max_triangles, nullptr, false}); });
+  const std::vector<std::uint8_t> plain(options.plain_tolerance_px > 0 ? refined.soup.faces.size() : 0, 1);
+  refined.seconds = seconds([&] { refined.mesh = refine_levels(refined.soup, oracle, {options.max_triangles, nullptr, false, plain}); });
   return refined;
 }
 

@@ -22,6 +22,7 @@ Display make_display(const std::string& name, const SurfaceOptions& options, con
 std::vector<std::pair<std::string, SurfaceOptions>> surfaces();
 
 /// A scene refined for the first branch of a display, over all of the visible cone, whatever the picture's rectangle.
+/// With plain_tolerance_px every face is plain.
 struct Refined {
   Soup soup;
   RefinedMesh mesh;

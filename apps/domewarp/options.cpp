@@ -186,6 +186,10 @@ void add_quality_options(CLI::App& app, RefineOptions& refine) {
         if (refine.tolerance_px < least_tolerance_px)
           throw Error(ErrorCode::usage, "--tolerance: must be at least 0.0001, which the single precision of the file resolves in 4096 rows, got " + text);
       });
+  add(*group, "--texture-tolerance", "The same inside faces, where only what they show can slide; depth and outlines hold (default: --tolerance)", "PX",
+      [&refine](const std::string& text) { refine.texture_tolerance_px = parse_positive("--texture-tolerance", text); });
+  add(*group, "--plain-tolerance", "The same inside faces of one colour and one normal, where nobody sees it (default: --texture-tolerance)", "PX",
+      [&refine](const std::string& text) { refine.plain_tolerance_px = parse_positive("--plain-tolerance", text); });
   add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.002)", "REL",
       [&refine](const std::string& text) { refine.depth_tolerance = parse_positive("--depth-tolerance", text); });
   add(*group, "--near", "Nothing nearer to the eye is drawn (default: 1e-5 of the scene's extent)", "D",

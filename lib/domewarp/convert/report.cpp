@@ -105,6 +105,8 @@ std::string to_json(const ConvertReport& report, const ConvertOptions& options) 
   json["vertices"] = refine.vertices;
   json["tolerance_px"] = options.refine.tolerance_px;
   json["error_px"] = {{"max", refine.error_px_max}, {"p99", refine.error_px_p99}, {"mean", refine.error_px_mean}};
+  if (std::max(options.refine.texture_tolerance_px, options.refine.plain_tolerance_px) > options.refine.tolerance_px)
+    json["slide_px"] = {{"max", refine.slide_px_max}, {"plain_faces", refine.plain_faces}};
   json["packing_px"] = report.packing_px;
   json["packing_flips"] = {{"mended", report.packing_mended}, {"left", report.packing_turned}};
   json["depth_error_rel"] = {{"max", refine.depth_error_max}};

@@ -19,6 +19,7 @@ constexpr std::size_t block_size = 8192;
 struct EdgeBlock {
   std::vector<float> errors;
   std::vector<MeshTopology::Edge> open;
+  float slide = 0;
   double depth_error = 0, widest_gap = 0;
   std::size_t uncertified = 0, unexplained = 0;
 };
@@ -43,10 +44,13 @@ public:
 
 private:
   void judge(const RefinedEdge& edge, std::uint32_t faces, EdgeBlock& block) const {
-    block.errors.push_back(edge.error);
+    if (edge.slides)
+      block.slide = std::max(block.slide, edge.error);
+    else
+      block.errors.push_back(edge.error);
     block.depth_error = std::max(block.depth_error, static_cast<double>(edge.depth_error));
-    block.uncertified += !edge.certified || edge.error * (1 - 1e-6f) > static_cast<float>(oracle_.options().tolerance);
-    const SourceEdge source = edge.source == RefinedEdge::none ? SourceEdge{2, 0} : refined_.source_edges[edge.source];
+    block.uncertified += !edge.certified || (!edge.slides && edge.error * (1 - 1e-6f) > static_cast<float>(oracle_.options().tolerance));
+    const SourceEdge source = edge.inner ? SourceEdge{2, 0} : refined_.source_edges[edge.source];
     if (is_whole_source_edge(refined_, edge)) faces += source.whole; // faces drawn as they are fit to it and to nothing smaller
     if (faces != 1 || is_rim(edge)) return;
     if (is_beyond(std::array{refined_.points[edge.a].mapped.image, refined_.points[edge.b].mapped.image}, half_extent_)) return; // its other face may have been dropped
@@ -80,12 +84,13 @@ std::size_t count_t_junctions(const RefinedMesh& refined, const MeshTopology& op
 void audit_edges(const RefinedMesh& refined, const EdgeOracle& oracle, const Raster& raster, const RefineOptions& options, RefineReport& report) {
   std::vector<float> errors(refined.whole.size());
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = refined.whole[i].error;
-  report.depth_error_max = std::max({report.depth_error_max, static_cast<double>(refined.whole_depth_error), refined.face_depth_error});
+  report.depth_error_max = std::max({report.depth_error_max, static_cast<double>(refined.whole_depth_error), refined.face_depth_error, static_cast<double>(refined.slide_depth_error)});
   MeshTopology open;
   for (const EdgeBlock& block : EdgeAudit(refined, oracle, kept_half_extent(options, raster)).run()) {
     errors.insert(errors.end(), block.errors.begin(), block.errors.end());
     open.edges.insert(open.edges.end(), block.open.begin(), block.open.end());
     report.depth_error_max = std::max(report.depth_error_max, block.depth_error);
+    report.slide_px_max = std::max(report.slide_px_max, block.slide / pixel_size(raster));
     report.uncertified_edges += block.uncertified;
     report.open_edges += block.unexplained;
     report.max_gap_px = std::max(report.max_gap_px, block.widest_gap / pixel_size(raster));

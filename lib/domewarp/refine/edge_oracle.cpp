@@ -23,8 +23,16 @@ constexpr double smallest_angle = 1e-9;
 constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
 constexpr double spare = 1.1;          ///< by how much more than the middle's deviation the greatest one is taken to be
 constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
+constexpr double slide_share = 0.7;    ///< of its tolerances that a sliding edge may take up: the faces beside it need more
 constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
+
+/// Whether both ends are on one boundary.
+bool is_chord(const MappedPoint& a, const MappedPoint& b) {
+  for (std::size_t i = 0; i < a.sides.size(); ++i)
+    if (a.sides[i] == 0 && b.sides[i] == 0) return true;
+  return false;
+}
 
 /// The angle that moves the rim by a tenth of the tolerance.
 double unnoticed_angle(const BranchMap& map, double tolerance) {
@@ -56,6 +64,8 @@ EdgeOracle EdgeOracle::relaxed(double factor) const {
   EdgeOracle oracle = *this;
   oracle.options_.tolerance *= factor;
   oracle.options_.face_tolerance *= factor;
+  oracle.options_.texture_tolerance *= factor;
+  oracle.options_.plain_tolerance *= factor;
   oracle.options_.depth_tolerance *= factor;
   oracle.options_.face_depth_tolerance *= factor;
   oracle.options_.turned_thickness *= factor;
@@ -153,11 +163,11 @@ bool EdgeOracle::is_sagging_chord(const MappedPoint& a, const MappedPoint& b) co
   return false;
 }
 
-EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const {
+EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b, const EdgeContext& context) const {
   const Vec3 d = b.eye - a.eye;
   const double length2 = glm::dot(d, d), nearest = std::min(a.rho, b.rho);
   const bool is_tiny = length2 <= smallest_angle * smallest_angle * nearest * nearest;
-  if (is_well_inside(length2, a, b)) return is_tiny ? EdgeDecision{} : split_by_criterion(split_by_error(a, b, known), a, b);
+  if (is_well_inside(length2, a, b)) return is_tiny ? EdgeDecision{} : split_by_criterion(split_by_error(a, b, context), a, b);
   EdgeDecision decision;
   bool outside = false;
   decision.split = split_at_boundary(a, b, outside);
@@ -174,7 +184,7 @@ EdgeDecision EdgeOracle::decide(const MappedPoint& a, const MappedPoint& b, cons
     return decision;
   }
   if (is_tiny) return decision;
-  return split_by_criterion(split_by_error(a, b, known), a, b);
+  return split_by_criterion(split_by_error(a, b, context), a, b);
 }
 
 // A jump along the side of a sliver can ask for ever for vertices ever nearer to that side. Halving ends sooner, so
@@ -219,12 +229,20 @@ EdgeOracle::Piece EdgeOracle::piece(const DrawnPoint& p, const DrawnPoint& q) co
   return {bend.second, peak_error(p.off, q.off, bend.second, p.weight, q.weight), depth};
 }
 
-EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const {
+EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeContext& context) const {
   EdgeDecision decision;
   const DrawnPoint from = drawn(a), to = drawn(b);
-  const EdgeBend whole = known != nullptr ? *known : bound_.edge(a, b, from.weight, to.weight);
+  const EdgeBend whole = context.known != nullptr ? *context.known : bound_.edge(a, b, from.weight, to.weight);
   const double least = std::min(from.weight, to.weight);
-  const auto is_good = [&] { return decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance; };
+  const InnerPlane* inside = is_chord(a, b) ? nullptr : context.inside; // a chord is outline
+  const Range span = inside != nullptr ? bound_.edge_span(a, b) : Range{};
+  const auto total_depth = [&](double error, double depth_error) { return slid_depth(span, std::max(a.rho, b.rho), error, depth_error, *inside); };
+  const auto is_good = [&] {
+    if (decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance) return true;
+    if (inside == nullptr || decision.error > slide_share * inside->tolerance) return false;
+    decision.slide_depth = rounded_up(total_depth(decision.error, decision.depth_error));
+    return decision.slides = decision.slide_depth <= slide_share * options_.depth_tolerance;
+  };
   decision.error = rounded_up(peak_error(0, 0, whole.second, from.weight, to.weight));
   decision.depth_error = rounded_up(whole.depth);
   decision.arch = rounded_up(whole.second / (8 * least));
@@ -242,10 +260,15 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   // What the middle is off by is certain; the bounds of the pieces cover the rest.
   const DrawnPoint middle = between(from, to);
   decision.evaluations = 1;
-  decision.middle = rounded_up(middle.off / middle.weight);
-  if (middle.off > options_.tolerance * middle.weight || middle.depth_off > options_.depth_tolerance) {
-    decision.split = share_out(a, b, middle, decision.evaluations);
-    return decision;
+  const double off = middle.off / middle.weight;
+  decision.middle = rounded_up(off);
+  if (off > options_.tolerance || middle.depth_off > options_.depth_tolerance) {
+    const double excess = inside == nullptr ? std::max(off / options_.tolerance, middle.depth_off / options_.depth_tolerance)
+                                            : std::max(off / inside->tolerance, total_depth(off, middle.depth_off) / options_.depth_tolerance) / slide_share;
+    if (excess > 1) {
+      decision.split = share_out(a, b, middle, excess, decision.evaluations);
+      return decision;
+    }
   }
   const Piece first = piece(from, middle), second = piece(middle, to);
   const auto lower = [&](double error, double depth, double arch) {
@@ -280,10 +303,9 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
 }
 
 // Halving alone makes 2^k pieces where n would do: an edge that needs n is split at floor(n / 2) / n of its angle.
-Split EdgeOracle::share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const {
-  const double excess = std::max(middle.off / (options_.tolerance * middle.weight), middle.depth_off / options_.depth_tolerance);
+Split EdgeOracle::share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, double excess, std::uint8_t& evaluations) const {
   const double pieces = std::ceil(std::sqrt(excess * spare));
-  if (pieces <= 2 || pieces > most_counted) return {0.5, vertex_at(middle)};
+  if (!(pieces > 2 && pieces <= most_counted)) return {0.5, vertex_at(middle)};
   const double share = std::floor(pieces / 2) / pieces;
   const double angle = std::atan2(glm::length(glm::cross(a.eye, b.eye)), glm::dot(a.eye, b.eye));
   const double p = a.rho * std::sin(share * angle), q = b.rho * std::sin((1 - share) * angle), t = p / (p + q);

@@ -47,6 +47,8 @@ struct EdgeDecision {
   float depth_error = 0;
   float middle = -1;        ///< the error at the middle, image units, where it was measured
   float arch = 0;           ///< the error at t is at most 4 t (1 - t) arch, image units
+  bool slides = false;      ///< kept by what holds inside a face (InnerPlane): error may exceed OracleOptions::tolerance
+  float slide_depth = 0;    ///< of such an edge: bounds the relative error of the depth at what its points slide to
   bool certified = true;    ///< false where no bound helps (folds of the curve) and samples had to do: error, arch are sampled
   std::uint8_t evaluations = 0;
 };
@@ -54,13 +56,25 @@ struct EdgeDecision {
 /// What an EdgeDecision tells a face of its side.
 struct SideBound {
   double middle = -1, arch = 0;
-  double depth = 0;
+  double depth = 0;         ///< EdgeDecision::depth_error
 };
 
 /// What judging faces took and found.
 struct FaceJudgement {
   std::size_t evaluations = 0; ///< of the map
   double depth_error = 0;      ///< bound over the faces found good, relative
+};
+
+/// Inside one face of the source, where what it shows can slide along its plane without leaving its outline.
+struct InnerPlane {
+  double tolerance = 0;     ///< how far it may, image units
+  double distance = 0;      ///< of the plane from the eye
+};
+
+/// What is known of an edge besides its ends.
+struct EdgeContext {
+  const EdgeBend* known = nullptr;    ///< what diagonal() found out about it, or null
+  const InnerPlane* inside = nullptr; ///< of an edge inside one face of the source: what holds there, or null
 };
 
 /// Of an edge that is not in the mesh yet.
@@ -82,6 +96,7 @@ struct OracleOptions {
   EdgeCriterion criterion = {}; ///< asked when nothing else splits an edge; may be empty
   double criterion_length = 0; ///< edges whose images are not longer are not asked about, image units
   double turned_thickness = 0; ///< image units: thinner faces may appear turned over
+  double texture_tolerance = 0, plain_tolerance = 0; ///< image units, inside faces: see RefineOptions; not above tolerance: none
 };
 
 /// Everything decided about an edge is decided here, from its two end points alone, in the order given by `precedes`.
@@ -94,8 +109,10 @@ public:
              const OracleOptions& options);
 
   /// @param a precedes b
-  /// @param known what diagonal() found out about the edge, or null
-  EdgeDecision decide(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known = nullptr) const;
+  EdgeDecision decide(const MappedPoint& a, const MappedPoint& b, const EdgeContext& context = {}) const;
+
+  /// What holds inside a face of the source; none where that is the same as on its outline, or the face is too thin to have a plane.
+  std::optional<InnerPlane> inner_plane(const Vec3& a, const Vec3& b, const Vec3& c, bool is_plain) const;
 
   /// Whether a figure is so small and so well inside what the branch shows that no boundary can meet it.
   template <typename... Points>
@@ -119,6 +136,9 @@ public:
   /// @param depth it is judged in 4^depth parts at most
   bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const;
 
+  /// Whether a face inside one of the source is within what holds there, its depth where its points slide to included.
+  bool may_slide(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, const InnerPlane& inside, FaceJudgement& judgement) const;
+
   /// See ErrorBound. No edge within a figure whose second / (8 weight_low) and depth are within the tolerances is split for its error.
   EdgeBend short_segments(const ShortSegments& segments) const { return bound_.short_segments(segments); }
 
@@ -127,8 +147,9 @@ public:
   /// The relative error of its interpolated depth.
   double interior_depth_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const;
 
-  /// Whether a face is within its tolerance at four points inside: for faces that no bound can prove good.
-  bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, FaceJudgement& judgement) const;
+  /// Whether a face is within a tolerance (image units) and that of its depth at four points inside: for faces that no bound
+  /// can prove good.
+  bool looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, double tolerance, FaceJudgement& judgement) const;
 
   /// The same with every tolerance, thickness, and the least length that the criterion is asked about, times `factor`.
   EdgeOracle relaxed(double factor) const;
@@ -147,6 +168,15 @@ private:
     bool has_depth = false; ///< whether the depth of the whole face is known to be good
   };
 
+  /// A face with its corners in canonical order and what bounds all of it.
+  struct SortedFace {
+    std::array<const MappedPoint*, 3> corner;
+    std::array<SideBound, 3> side; ///< k from corner k to k + 1
+    Vec3 second;                   ///< FaceBend::second
+    double error, depth_error;     ///< image units; relative
+  };
+  SortedFace bound_of(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side) const;
+
   /// Bounds of what is drawn between two points: of the second derivative along, of the error, of the depth's.
   struct Piece {
     double second, error, depth;
@@ -163,9 +193,10 @@ private:
   DrawnPoint between(const DrawnPoint& p, const DrawnPoint& q) const; ///< one evaluation
   MappedPoint vertex_at(const DrawnPoint& p) const; ///< p must know where it belongs
   Piece piece(const DrawnPoint& p, const DrawnPoint& q) const;
-  Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, std::uint8_t& evaluations) const;
+  double slid_depth(const Range& span, double farthest, double error, double depth_error, const InnerPlane& inside) const;
+  Split share_out(const MappedPoint& a, const MappedPoint& b, const DrawnPoint& middle, double excess, std::uint8_t& evaluations) const;
   EdgeDecision split_by_criterion(EdgeDecision decision, const MappedPoint& a, const MappedPoint& b) const;
-  EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeBend* known) const;
+  EdgeDecision split_by_error(const MappedPoint& a, const MappedPoint& b, const EdgeContext& context) const;
   EdgeDecision split_by_samples(const MappedPoint& a, const MappedPoint& b) const;
 
   const BranchMap& map_;

@@ -134,6 +134,42 @@ EdgeBend ErrorBound::edge(const Direction& a, const Direction& b, double wa, dou
   return bend;
 }
 
+Range ErrorBound::edge_span(const Direction& a, const Direction& b) const {
+  const Vec3 d = b.eye - a.eye, normal = glm::cross(a.eye, b.eye);
+  const double area = glm::length(normal);
+  if (!(area > 1e-13 * a.rho * b.rho)) return between(a.u, b.u);
+  const auto turned = [&](const Direction& p) { return (p.rho * d.z - p.eye.z * glm::dot(p.eye, d) / p.rho) / area; };
+  const Heading h = heading(a, b, turned(a), turned(b), std::min(1.0, std::abs(normal.z) / area));
+  return {h.u_low, h.u_high};
+}
+
+namespace {
+
+/// The least that one radian moves the image.
+double least_stretch(const RadialRange& r) {
+  const auto least = [](const Range& a) { return a.low > 0 ? a.low : std::max(0.0, -a.high); };
+  return std::min(least(r.slope), least(r.factor)) - r.slope_jump;
+}
+
+} // namespace
+
+// The points of a slide are within the angle slide / stretch of where it begins, the stretch being that of the angles it passes.
+double ErrorBound::slide_depth(const Range& span, double farthest, double distance, double slide) const {
+  if (slide == 0) return 0;
+  const double most = 2 * slide / least_stretch(ranges_.over(span.low, span.high));
+  if (!(most > 0 && most < 1)) return infinity;
+  const double margin = u_margin(most);
+  const RadialRange r = ranges_.over(std::max(0.0, span.low - margin), std::min(1.0, span.high + margin));
+  const double angle = slide / least_stretch(r);
+  if (!(angle > 0 && angle <= most)) return infinity;
+  const double cosine = std::min(1.0, distance / farthest), sine = std::sqrt(1 - cosine * cosine);
+  const double beyond = cosine * std::cos(angle) - sine * std::sin(angle); // of the ray that the slide turns to at most
+  if (!(beyond > 0)) return infinity;
+  const double rho = cosine / beyond - 1;
+  if (projection_ == Projection::orthographic) return rho;
+  return (1 + rho) * (1 + (magnitude(r.weight_slope) * angle + r.weight_jump) / r.weight.low) - 1;
+}
+
 namespace {
 
 /// The corners of a face as directions.
@@ -253,6 +289,12 @@ FaceDepth depth_of(const FaceDirections& face, const FaceFrame& frame, const Rad
 }
 
 } // namespace
+
+Range ErrorBound::face_span(const Direction& a, const Direction& b, const Direction& c) const {
+  const std::array<const Direction*, 3> corner{&a, &b, &c};
+  const FaceFrame frame = face_frame(corner, face_directions(corner));
+  return {frame.u_low, frame.u_high};
+}
 
 FaceBend ErrorBound::face(const std::array<const Direction*, 3>& corner, const Vec3& weights, bool with_depth) const {
   const FaceDirections face = face_directions(corner);

@@ -86,6 +86,18 @@ public:
 
   FaceBend face(const std::array<const Direction*, 3>& corner, const Vec3& weights, bool with_depth) const;
 
+  /// Half-angle indices of all points of an edge, of a face.
+  Range edge_span(const Direction& a, const Direction& b) const;
+  Range face_span(const Direction& a, const Direction& b, const Direction& c) const;
+
+  /// By how much (relative) the depth of a point of a plane differs at most from that of the point of this plane whose image
+  /// is `slide` away; infinite where nothing bounds it. With alpha between ray and normal, rho = distance / cos(alpha).
+  /// @param span half-angle indices of the points
+  /// @param farthest of them from the eye
+  /// @param distance of the plane from the eye
+  /// @param slide image units
+  double slide_depth(const Range& span, double farthest, double distance, double slide) const;
+
   /// Bounds of every segment between two points of the figure, its weights linear: not as sharp as edge(), but in a fraction
   /// of the time. A figure within another never has larger bounds than that, up to rounding. Infinite when it is not small.
   EdgeBend short_segments(const ShortSegments& segments) const;

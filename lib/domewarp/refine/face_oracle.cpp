@@ -21,12 +21,12 @@ double lowest_of(const Vec3& v) { return v[lowest(v)]; }
 
 } // namespace
 
-bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, FaceJudgement& judgement) const {
+bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, double tolerance, FaceJudgement& judgement) const {
   constexpr double third = 1.0 / 3.0;
   for (const Vec3& weights : {Vec3(third), Vec3(0.5, 0.25, 0.25), Vec3(0.25, 0.5, 0.25), Vec3(0.25, 0.25, 0.5)}) {
     ++judgement.evaluations;
     const double depth = interior_depth_error(a, b, c, weights);
-    if (interior_error(a, b, c, weights) > options_.tolerance || depth > options_.face_depth_tolerance) return false;
+    if (interior_error(a, b, c, weights) > tolerance || depth > options_.face_depth_tolerance) return false;
     judgement.depth_error = std::max(judgement.depth_error, depth);
   }
   return true;
@@ -34,7 +34,7 @@ bool EdgeOracle::looks_good(const MappedPoint& a, const MappedPoint& b, const Ma
 
 // Two sides have arches, and on every segment parallel to the third the second derivative is that along it. Three such
 // bounds are open; the side with the lowest arch promises the least.
-bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const {
+EdgeOracle::SortedFace EdgeOracle::bound_of(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side) const {
   std::array<int, 3> order{0, 1, 2}; // nothing may depend on how the face is stored
   const auto sort_two = [&](int i, int j) {
     if (precedes(corner[order[j]]->eye, corner[order[i]]->eye)) std::swap(order[i], order[j]);
@@ -42,35 +42,41 @@ bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const 
   sort_two(0, 1);
   sort_two(1, 2);
   sort_two(0, 1);
-  std::array<const MappedPoint*, 3> sorted;
-  std::array<SideBound, 3> bound;
+  SortedFace face;
   Vec3 weights, arches;
   for (int i = 0; i < 3; ++i) {
     const int from = order[i], to = order[(i + 1) % 3];
-    sorted[i] = corner[from];
-    bound[i] = side[to == (from + 1) % 3 ? from : to];
-    weights[i] = sorted[i]->mapped.weight;
-    arches[i] = bound[i].arch;
+    face.corner[i] = corner[from];
+    face.side[i] = side[to == (from + 1) % 3 ? from : to];
+    weights[i] = face.corner[i]->mapped.weight;
+    arches[i] = face.side[i].arch;
   }
-  const FaceBend bend = bound_.face({sorted[0], sorted[1], sorted[2]}, weights, true);
-  const double depth_error = peak_depth(Vec3(0), bend.depth);
-  const bool has_depth = depth_error <= options_.face_depth_tolerance;
-  if (has_depth) judgement.depth_error = std::max(judgement.depth_error, depth_error);
+  const FaceBend bend = bound_.face({face.corner[0], face.corner[1], face.corner[2]}, weights, true);
   const int k = lowest(arches);
   arches[k] = bend.second[k] / (8 * lowest_of(weights));
-  if (has_depth && peak_face(Vec3(0), arches) <= options_.face_tolerance) return true;
+  face.second = bend.second;
+  face.error = peak_face(Vec3(0), arches);
+  face.depth_error = peak_depth(Vec3(0), bend.depth);
+  return face;
+}
+
+bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const {
+  const SortedFace face = bound_of(corner, side);
+  const bool has_depth = face.depth_error <= options_.face_depth_tolerance;
+  if (has_depth) judgement.depth_error = std::max(judgement.depth_error, face.depth_error);
+  if (has_depth && face.error <= options_.face_tolerance) return true;
 
   std::array<DrawnPoint, 3> drawn_corner, middle;
-  for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*sorted[i]);
+  for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*face.corner[i]);
   for (int i = 0; i < 3; ++i) {
     const DrawnPoint &p = drawn_corner[i], &q = drawn_corner[(i + 1) % 3];
-    const bool is_known = bound[i].middle >= 0;
+    const bool is_known = face.side[i].middle >= 0;
     middle[i] = is_known ? halfway(p, q) : between(p, q);
-    if (is_known) middle[i].off = bound[i].middle * middle[i].weight;
-    if (is_known) middle[i].depth_off = bound[i].depth;
+    if (is_known) middle[i].off = face.side[i].middle * middle[i].weight;
+    if (is_known) middle[i].depth_off = face.side[i].depth;
     judgement.evaluations += !is_known;
   }
-  return are_parts_good(drawn_corner, middle, {0.25 * bend.second, depth, has_depth}, judgement);
+  return are_parts_good(drawn_corner, middle, {0.25 * face.second, depth, has_depth}, judgement);
 }
 
 // What the middles of the sides are off by is known; the bounds of the four parts cover the rest. Side k of each part is

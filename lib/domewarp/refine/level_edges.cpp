@@ -29,6 +29,7 @@ void note(const EdgeDecision& decision, RefinedEdge& edge) {
   edge.middle_error = decision.middle;
   edge.arch = decision.arch;
   edge.certified = decision.certified;
+  edge.slides = decision.slides;
 }
 
 } // namespace
@@ -48,8 +49,8 @@ void halve_edges(LevelState& state, const std::vector<EdgeSplits>& blocks) {
       edge.middle = static_cast<std::uint32_t>(first_point + slot);
       edge.child = static_cast<std::uint32_t>(first_edge + 2 * slot);
       mesh.points[edge.middle] = point;
-      mesh.edges[edge.child] = edge_of(mesh.points, edge.a, edge.middle, edge.source);
-      mesh.edges[edge.child + 1] = edge_of(mesh.points, edge.middle, edge.b, edge.source);
+      mesh.edges[edge.child] = edge_of(mesh.points, edge.a, edge.middle, edge.source, edge.inner);
+      mesh.edges[edge.child + 1] = edge_of(mesh.points, edge.middle, edge.b, edge.source, edge.inner);
       ++slot;
     }
   });
@@ -61,19 +62,24 @@ std::size_t split_edges(LevelState& state, std::size_t first) {
   const std::vector<std::uint8_t> is_used = used_edges(state, first);
   std::vector<EdgeSplits> splits(level_blocks(end - first));
   std::vector<std::size_t> evaluations(splits.size(), 0);
+  std::vector<float> slide_depth(splits.size(), mesh.slide_depth_error);
   parallel_each(splits.size(), 1, [&](std::size_t i) {
     const std::size_t begin = first + i * level_block;
     for (std::size_t e = begin; e < std::min(end, begin + level_block); ++e) {
       if (!is_used[e - first]) continue;
       RefinedEdge& edge = mesh.edges[e];
       const EdgeBend known{edge.second, edge.depth_error};
-      const EdgeDecision decision = state.oracle.decide(mesh.points[edge.a], mesh.points[edge.b], known.second >= 0 ? &known : nullptr);
+      const std::optional<InnerPlane> inside = edge.inner ? inner_plane(state, edge.source) : std::nullopt;
+      const EdgeDecision decision =
+          state.oracle.decide(mesh.points[edge.a], mesh.points[edge.b], {known.second >= 0 ? &known : nullptr, inside ? &*inside : nullptr});
+      if (decision.slides) slide_depth[i] = std::max(slide_depth[i], decision.slide_depth);
       note(decision, edge);
       evaluations[i] += decision.evaluations;
       if (decision.split) splits[i].emplace_back(static_cast<std::uint32_t>(e), decision.split->point);
     }
   });
   mesh.evaluations = std::accumulate(evaluations.begin(), evaluations.end(), mesh.evaluations);
+  for (const float depth : slide_depth) mesh.slide_depth_error = std::max(mesh.slide_depth_error, depth);
   halve_edges(state, splits);
   return end;
 }

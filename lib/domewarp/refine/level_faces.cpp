@@ -21,9 +21,9 @@ constexpr int first_depth = 2;     ///< a face is judged in 16 parts, and more f
 constexpr int most_insertions = 4; ///< faces that their bound never proves good (long slivers beside the eye) would go on for ever
 constexpr std::uint32_t local_bit = 0x80000000; ///< marks ids that count from the start of a block's own results
 
-/// A new edge inside a face: the ids of its ends, its bounds where known.
+/// A new edge inside a face of the soup: the ids of its ends, its bounds where known.
 struct InnerEdge {
-  std::uint32_t p, q;
+  std::uint32_t p, q, source;
   float second = -1, depth = 0; ///< see RefinedEdge::second
 };
 
@@ -67,7 +67,7 @@ public:
     const auto [pattern, bend] = choose_pattern(marks, mapped, oracle_);
     const std::uint32_t first_edge = static_cast<std::uint32_t>(block_.edges.size());
     for (int i = 0; i < pattern.edges; ++i) {
-      InnerEdge edge{point[pattern.edge[i][0]], point[pattern.edge[i][1]]};
+      InnerEdge edge{point[pattern.edge[i][0]], point[pattern.edge[i][1]], face.source};
       if (bend[i]) {
         edge.second = rounded_up(bend[i]->second);
         edge.depth = rounded_up(bend[i]->depth);
@@ -177,7 +177,11 @@ private:
     const double depth_before = block_.judgement.depth_error;
     if (oracle_.is_good({&a, &b, &c}, side, first_depth + face.insertions, block_.judgement)) return std::nullopt;
     block_.judgement.depth_error = depth_before; // what is not kept is not counted
-    if ((certified && face.insertions < most_insertions) || !oracle_.looks_good(a, b, c, block_.judgement)) {
+    const std::optional<InnerPlane> inside = inner_plane(state_, face.source);
+    if (inside && oracle_.may_slide({&a, &b, &c}, side, *inside, block_.judgement)) return std::nullopt;
+    const bool is_hopeless = !certified || face.insertions >= most_insertions;
+    const double tolerance = inside ? inside->tolerance : oracle_.options().tolerance;
+    if (!is_hopeless || !oracle_.looks_good(a, b, c, tolerance, block_.judgement)) {
       block_.judgement.depth_error = depth_before;
       return Vec3(1.0 / 3.0);
     }
@@ -194,7 +198,7 @@ private:
     ++block_.judgement.evaluations;
     block_.wedges.push_back({face.wedge, {weights.x, weights.y, weights.z}, point, state_.soup.faces[face.source].part});
     const std::uint32_t spoke = local_bit | static_cast<std::uint32_t>(block_.edges.size());
-    for (int k = 0; k < 3; ++k) block_.edges.push_back({face.point[k], point});
+    for (int k = 0; k < 3; ++k) block_.edges.push_back({face.point[k], point, face.source});
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
       block_.active.push_back({{face.point[k], face.point[next], point},
@@ -229,7 +233,7 @@ void place(LevelState& state, const FaceBlock& block, const Places& at) {
   }
   for (std::size_t i = 0; i < block.edges.size(); ++i) {
     const InnerEdge& inner = block.edges[i];
-    RefinedEdge& edge = mesh.edges[at.edges + i] = edge_of(mesh.points, globalise(inner.p, at.points), globalise(inner.q, at.points), RefinedEdge::none);
+    RefinedEdge& edge = mesh.edges[at.edges + i] = edge_of(mesh.points, globalise(inner.p, at.points), globalise(inner.q, at.points), inner.source, true);
     edge.second = inner.second;
     edge.depth_error = inner.depth;
   }

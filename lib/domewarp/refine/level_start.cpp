@@ -56,17 +56,24 @@ void add_source_edges(LevelState& state, const SiftedFaces& sifted) {
 
 } // namespace
 
-RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source) {
+RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source, bool inner) {
   RefinedEdge edge;
   const bool in_order = precedes(points[p].eye, points[q].eye);
   edge.a = in_order ? p : q;
   edge.b = in_order ? q : p;
   edge.source = source;
+  edge.inner = inner;
   return edge;
 }
 
+std::optional<InnerPlane> inner_plane(const LevelState& state, std::uint32_t face) {
+  const Triangle point = points_of(state.soup, state.soup.faces[face]);
+  return state.oracle.inner_plane(state.soup.points[point[0]], state.soup.points[point[1]], state.soup.points[point[2]],
+                                  !state.plain_faces.empty() && state.plain_faces[face] != 0);
+}
+
 LevelState start_levels(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options) {
-  LevelState state{soup, oracle, options.cull};
+  LevelState state{soup, oracle, options.cull, options.plain_faces};
   RefinedMesh& mesh = state.mesh;
   mesh.points.reserve(soup.points.size() + soup.points.size() / 8 + 1024); // a few more must not move them all
   mesh.points.resize(soup.points.size());

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@ struct LevelState {
   const Soup& soup;
   const EdgeOracle& oracle;
   const PictureCull* cull;
+  std::span<const std::uint8_t> plain_faces; ///< see LevelOptions
   RefinedMesh mesh{};
   RawVector<RefinedFace> active{};  ///< neither final nor dropped
   std::uint32_t first_wedge = 0;      ///< id of mesh.wedges[0]
@@ -30,8 +32,11 @@ struct LevelState {
 /// Locates the soup's points, sifts its faces and builds the edges of those that must be refined.
 LevelState start_levels(const Soup& soup, const EdgeOracle& oracle, const LevelOptions& options);
 
-/// The edge of the refined mesh that joins two points.
-RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source);
+/// The edge of the refined mesh that joins two points. @param source,inner see RefinedEdge
+RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::uint32_t q, std::uint32_t source, bool inner = false);
+
+/// What holds inside a face of the soup, if that differs from what holds on its outline.
+std::optional<InnerPlane> inner_plane(const LevelState& state, std::uint32_t face);
 
 /// Edges to split and their points, in the order of the edges.
 using EdgeSplits = std::vector<std::pair<std::uint32_t, MappedPoint>>;

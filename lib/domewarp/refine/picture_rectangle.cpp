@@ -6,7 +6,7 @@
 namespace domewarp {
 
 Vec2 kept_half_extent(const RefineOptions& options, const Raster& raster) {
-  return Vec2(aspect(raster), 1) + (options.tolerance_px + 1) * pixel_size(raster);
+  return Vec2(aspect(raster), 1) + (std::max({options.tolerance_px, options.texture_tolerance_px, options.plain_tolerance_px}) + 1) * pixel_size(raster);
 }
 
 bool is_beyond(std::span<const Vec2> points, const Vec2& half_extent) {

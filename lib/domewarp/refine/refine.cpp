@@ -17,6 +17,7 @@
 #include "domewarp/refine/emit.h"
 #include "domewarp/refine/levels.h"
 #include "domewarp/refine/lines.h"
+#include "domewarp/refine/plain_faces.h"
 #include "domewarp/refine/soup.h"
 #include "domewarp/refine/picture_rectangle.h"
 #include "domewarp/refine/tolerances.h"
@@ -45,6 +46,13 @@ void check(const RefineOptions& options) {
       throw Error(ErrorCode::usage, std::string(option) + ": must be a positive number, got " + std::to_string(value));
   };
   positive(options.tolerance_px, "--tolerance");
+  const auto looser = [&](double value, double than, const char* option, const char* other) {
+    if (value == 0) return;
+    positive(value, option);
+    if (value < than) throw Error(ErrorCode::usage, std::string(option) + ": must not be below " + other + " (" + std::to_string(than) + "), got " + std::to_string(value));
+  };
+  looser(options.texture_tolerance_px, options.tolerance_px, "--texture-tolerance", "--tolerance");
+  looser(options.plain_tolerance_px, std::max(options.tolerance_px, options.texture_tolerance_px), "--plain-tolerance", "--texture-tolerance");
   positive(options.depth_tolerance, "--depth-tolerance");
   positive(options.isotropic.threshold, "--threshold");
   if (options.isotropic.max_lod < 0 || options.isotropic.max_lod > 12)
@@ -166,11 +174,15 @@ Scene refine_and_release(const Scene& scene, const View& view, const Surface& su
   release();
   report.soup_ms = watch.lap();
 
+  std::vector<std::uint8_t> plain;
+  if (options.plain_tolerance_px > std::max(options.tolerance_px, options.texture_tolerance_px)) plain = find_plain_faces(scene, soup, options);
+  report.plain_faces = static_cast<std::size_t>(std::count(plain.begin(), plain.end(), 1));
+
   for (std::size_t b = 0; b < map.branches.size(); ++b) {
     const BranchMap& branch = map.branches[b];
     const EdgeOracle oracle(surface, b, branch, make_visible_region(branch.branch(), report.near), oracle_options(options, raster));
     const PictureCull off_picture(branch, half_extent);
-    RefinedMesh refined = refine_within(soup, oracle, {options.max_triangles, options.skip.off_picture ? &off_picture : nullptr, options.skip.small_faces});
+    RefinedMesh refined = refine_within(soup, oracle, {options.max_triangles, options.skip.off_picture ? &off_picture : nullptr, options.skip.small_faces, plain});
     report.skipped.off_picture += refined.off_picture;
     report.skipped.small_faces += refined.whole.size();
     report.levels = std::max(report.levels, refined.levels);

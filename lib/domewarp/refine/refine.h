@@ -38,6 +38,8 @@ using VertexColour = std::function<Vec4(const VertexToColour&)>;
 
 struct RefineOptions {
   double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
+  double texture_tolerance_px = 0;   ///< the same inside faces, where only what they show can slide, pixels; at least tolerance_px, 0: that
+  double plain_tolerance_px = 0;     ///< the same inside plain faces (plain_faces.h), where that cannot be seen; at least both above, 0: the one above
   double depth_tolerance = 0.002;    ///< largest relative error of the interpolated depth, > 0: 1 % put a train's wheels behind its rails
   Projection projection = Projection::perspective;
   double near = 0;                   ///< nothing nearer to the eye is drawn; 0: 1e-5 of the scene's extent
@@ -68,6 +70,8 @@ struct RefineReport {
   std::size_t map_evaluations = 0;
   std::size_t levels = 0;            ///< of refinement, the deepest branch
   double error_px_max = 0, error_px_p99 = 0, error_px_mean = 0; ///< certified bounds of the edges drawn; nan when nothing bounds them
+  double slide_px_max = 0;           ///< certified bound of the inner edges that the looser tolerances kept, which do not count above
+  std::size_t plain_faces = 0;       ///< of the source, counted where plain_tolerance_px asks for them
   double depth_error_max = 0;        ///< certified bound of the relative error of the depth of every face drawn
   std::size_t uncertified_edges = 0; ///< drawn with a bound above the tolerance (a limit stopped them) or judged by samples (folds)
   std::size_t uncertified_faces = 0; ///< judged by samples: beside folds, and slivers close to the eye
@@ -96,7 +100,7 @@ struct RefineReport {
 /// @return a scene of warped meshes in output space (perspective: w (x', y', -1); orthographic: (x', y', -depth)),
 ///         one mesh and instance per drawn instance of the source, with the camera that shows the picture, materials,
 ///         textures and images carried over. The same for any number of threads.
-/// @throws Error(usage) when a tolerance is not positive and finite
+/// @throws Error(usage) when a tolerance is not positive and finite, or one for insides below that for outlines
 Scene refine(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
              const RefineOptions& options, RefineReport& report);
 

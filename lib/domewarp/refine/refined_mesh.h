@@ -18,12 +18,14 @@ struct RefinedEdge {
   std::uint32_t a = 0, b = 0;
   std::uint32_t middle = none;   ///< the point that splits it
   std::uint32_t child = 0;       ///< its halves: child (with a) and child + 1 (with b)
-  std::uint32_t source = none;   ///< the source edge it is part of (into source_edges), none inside a source face
+  std::uint32_t source = none;   ///< the source edge it is part of (into source_edges); of an inner edge the face of the soup it is inside of
   float error = 0, depth_error = 0;
   float second = -1;             ///< until it is decided: EdgeBend::second with the other in depth_error, where known
   float middle_error = -1;       ///< see EdgeDecision
   float arch = 0;                ///< see EdgeDecision
   bool certified = true;         ///< see EdgeDecision
+  bool slides = false;           ///< see EdgeDecision
+  bool inner = false;            ///< inside one face of the source
 };
 
 struct RefinedFace {
@@ -54,6 +56,7 @@ struct RefinedMesh {
   std::vector<std::size_t> wedge_groups; ///< ends of runs of wedges whose parents stand before the run; may be empty
   RawVector<RefinedFace> faces; ///< final and visible
   std::vector<WholeFace> whole;  ///< in the order of the soup
+  float slide_depth_error = 0;   ///< bounds the edges that slide, relative
   float whole_depth_error = 0;   ///< bounds them all, relative
   double face_depth_error = 0;   ///< bounds the interiors of `faces`, relative
   std::size_t clipped = 0;
@@ -66,7 +69,7 @@ struct RefinedMesh {
 
 /// Whether an edge is a whole one of the source.
 inline bool is_whole_source_edge(const RefinedMesh& mesh, const RefinedEdge& edge) {
-  return edge.source != RefinedEdge::none && std::max(edge.a, edge.b) < mesh.source_points;
+  return !edge.inner && std::max(edge.a, edge.b) < mesh.source_points;
 }
 
 } // namespace domewarp

@@ -24,8 +24,11 @@ constexpr double turned_px = 5e-4; ///< half of what the audit calls turned
 
 OracleOptions oracle_options(const RefineOptions& options, const Raster& raster) {
   const double tolerance = options.tolerance_px * pixel_size(raster), edge = edge_share * tolerance;
+  const double texture = edge_share * std::max(options.tolerance_px, options.texture_tolerance_px) * pixel_size(raster);
+  const double plain = std::max(texture, edge_share * options.plain_tolerance_px * pixel_size(raster));
   OracleOptions oracle{edge, std::max(edge, tolerance - file_rounding), depth_share * options.depth_tolerance, options.projection,
-                       options.depth_tolerance, options.criterion, options.criterion_px * pixel_size(raster), std::max(turned_px * pixel_size(raster), file_rounding)};
+                       options.depth_tolerance, options.criterion, options.criterion_px * pixel_size(raster), std::max(turned_px * pixel_size(raster), file_rounding),
+                       texture, plain};
   if (options.subdivision == Subdivision::none) oracle.tolerance = oracle.face_tolerance = oracle.depth_tolerance = oracle.face_depth_tolerance = oracle.turned_thickness = 1e30;
   return oracle;
 }
