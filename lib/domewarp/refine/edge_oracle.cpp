@@ -21,6 +21,7 @@ namespace {
 /// Edges shorter than this angle are never split: 1e-7 of an image is far below a pixel's thousandth.
 constexpr double smallest_angle = 1e-9;
 constexpr double hopeless = 64;        ///< an edge whose eighths still have this many tolerances of error
+constexpr double least_left = 0.25;    ///< of what a bound leaves open, where pieces half as long are hardly ever better
 constexpr double spare = 1.1;          ///< by how much more than the middle's deviation the greatest one is taken to be
 constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
 constexpr double slide_share = 0.7;    ///< of its tolerances that a sliding edge may take up: the faces beside it need more
@@ -266,6 +267,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
     const double excess = inside == nullptr ? std::max(off / options_.tolerance, middle.depth_off / options_.depth_tolerance)
                                             : std::max(off / inside->tolerance, total_depth(off, middle.depth_off) / options_.depth_tolerance) / slide_share;
     if (excess > 1) {
+      decision.excess = static_cast<float>(excess);
       decision.split = share_out(a, b, middle, excess, decision.evaluations);
       return decision;
     }
@@ -282,6 +284,12 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
         std::max(middle.off, 0.5 * middle.off + 0.25 * std::max(first.second, second.second)));
   if (is_good()) return decision;
 
+  const auto halve = [&] {
+    decision.excess = static_cast<float>(std::max(decision.error / options_.tolerance, decision.depth_error / options_.depth_tolerance));
+    decision.split = Split{0.5, vertex_at(middle)};
+    return decision;
+  };
+  if (off + least_left * (decision.error - off) > options_.tolerance && inside == nullptr && !has_fold()) return halve();
   decision.evaluations += 2;
   double error = 0, depth = 0, arch = 0;
   for (const DrawnPoint* end : {&from, &to}) {
@@ -298,8 +306,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   if (extent <= options_.tolerance) decision.error = std::min(decision.error, rounded_up(extent)); // beside an end it may rise faster than any arch
   if (is_good()) return decision;
   if (has_fold()) return split_by_samples(a, b);
-  decision.split = Split{0.5, vertex_at(middle)};
-  return decision;
+  return halve();
 }
 
 // Halving alone makes 2^k pieces where n would do: an edge that needs n is split at floor(n / 2) / n of its angle.

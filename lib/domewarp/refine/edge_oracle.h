@@ -45,6 +45,7 @@ struct EdgeDecision {
   std::optional<Split> split;
   float error = 0;
   float depth_error = 0;
+  float excess = 0;         ///< of an edge that is split for its error: by how many times that, or the depth's, exceeds its tolerance
   float middle = -1;        ///< the error at the middle, image units, where it was measured
   float arch = 0;           ///< the error at t is at most 4 t (1 - t) arch, image units
   bool slides = false;      ///< kept by what holds inside a face (InnerPlane): error may exceed OracleOptions::tolerance

@@ -23,16 +23,17 @@ std::vector<std::uint8_t> used_edges(const LevelState& state, std::size_t first)
   return is_used;
 }
 
+} // namespace
+
 void note(const EdgeDecision& decision, RefinedEdge& edge) {
   edge.error = decision.error;
   edge.depth_error = decision.depth_error;
   edge.middle_error = decision.middle;
+  edge.excess = decision.excess;
   edge.arch = decision.arch;
   edge.certified = decision.certified;
   edge.slides = decision.slides;
 }
-
-} // namespace
 
 void halve_edges(LevelState& state, const std::vector<EdgeSplits>& blocks) {
   RefinedMesh& mesh = state.mesh;
@@ -56,7 +57,7 @@ void halve_edges(LevelState& state, const std::vector<EdgeSplits>& blocks) {
   });
 }
 
-std::size_t split_edges(LevelState& state, std::size_t first) {
+std::size_t decide_edges(LevelState& state, std::size_t first) {
   RefinedMesh& mesh = state.mesh;
   const std::size_t end = mesh.edges.size();
   const std::vector<std::uint8_t> is_used = used_edges(state, first);
@@ -80,7 +81,7 @@ std::size_t split_edges(LevelState& state, std::size_t first) {
   });
   mesh.evaluations = std::accumulate(evaluations.begin(), evaluations.end(), mesh.evaluations);
   for (const float depth : slide_depth) mesh.slide_depth_error = std::max(mesh.slide_depth_error, depth);
-  halve_edges(state, splits);
+  for (const EdgeSplits& block : splits) state.wanted.insert(state.wanted.end(), block.begin(), block.end());
   return end;
 }
 

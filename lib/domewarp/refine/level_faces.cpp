@@ -54,6 +54,7 @@ public:
   void split(const RefinedFace& face, const Triangle& middle_wedges) {
     unsigned marks = 0;
     for (int k = 0; k < 3; ++k) marks |= static_cast<unsigned>(is_split(mesh_, face.edge[k])) << k;
+    if (marks == 0 && std::ranges::any_of(face.edge, [&](std::uint32_t e) { return mesh_.edges[e].wanted; })) return block_.active.push_back(face); // it waits as well
     if (marks == 0) return finish(face);
     std::array<std::uint32_t, 6> point, wedge;
     for (int k = 0; k < 3; ++k) {

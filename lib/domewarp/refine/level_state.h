@@ -18,12 +18,16 @@ namespace domewarp {
 inline constexpr std::size_t level_block = 2048;
 inline std::size_t level_blocks(std::size_t items) { return (items + level_block - 1) / level_block; }
 
+/// Edges to split and their points, in the order of the edges.
+using EdgeSplits = std::vector<std::pair<std::uint32_t, MappedPoint>>;
+
 struct LevelState {
   const Soup& soup;
   const EdgeOracle& oracle;
   const PictureCull* cull;
   std::span<const std::uint8_t> plain_faces; ///< see LevelOptions
   RefinedMesh mesh{};
+  EdgeSplits wanted{};                ///< edges that must be split and are not yet
   RawVector<RefinedFace> active{};  ///< neither final nor dropped
   std::uint32_t first_wedge = 0;      ///< id of mesh.wedges[0]
   std::uint32_t first_middle = 0;     ///< point id of the first middle of the edges that this level splits; they come in a row
@@ -38,14 +42,21 @@ RefinedEdge edge_of(std::span<const MappedPoint> points, std::uint32_t p, std::u
 /// What holds inside a face of the soup, if that differs from what holds on its outline.
 std::optional<InnerPlane> inner_plane(const LevelState& state, std::uint32_t face);
 
-/// Edges to split and their points, in the order of the edges.
-using EdgeSplits = std::vector<std::pair<std::uint32_t, MappedPoint>>;
-
 /// Gives the edges of all blocks their middles and halves.
 void halve_edges(LevelState& state, const std::vector<EdgeSplits>& blocks);
 
-/// Decides about all edges from `first` on and halves those that must be. @return the first undecided edge
-std::size_t split_edges(LevelState& state, std::size_t first);
+/// Writes down what was decided.
+void note(const EdgeDecision& decision, RefinedEdge& edge);
+
+/// Decides about all edges from `first` on; those that must be split join the wanted ones. @return the first undecided edge
+std::size_t decide_edges(LevelState& state, std::size_t first);
+
+/// Gives the two faces of a wanted inner edge their other diagonal where that is good, or much less bad.
+void swap_edges(LevelState& state);
+
+/// The wanted edges that are split now: all but inner ones beside a face that has another to split, a longer one or no inner
+/// one. They may never need it: others are made, and tried as their other diagonal, in the meantime.
+EdgeSplits choose_splits(LevelState& state);
 
 /// Per active face the wedges at the middles of its split sides: one for all faces that have the same wedges at the side's ends.
 std::vector<Triangle> add_middle_wedges(LevelState& state);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "domewarp/refine/flips.h"
 #include "domewarp/refine/level_state.h"
@@ -30,7 +31,10 @@ void finish_early(LevelState& state, std::size_t first_undecided) {
 void settle(LevelState& state, std::size_t decided, std::size_t max_triangles) {
   RefinedMesh& mesh = state.mesh;
   for (std::size_t level = 1; !state.active.empty(); ++level) {
-    decided = split_edges(state, decided);
+    decided = decide_edges(state, decided);
+    const bool asks = static_cast<bool>(state.oracle.options().criterion); // which wants edges short, not few
+    if (!asks) swap_edges(state);
+    halve_edges(state, {asks ? std::exchange(state.wanted, {}) : choose_splits(state)});
     split_faces(state);
     ++mesh.levels;
     if (mesh.whole.size() + mesh.faces.size() + state.active.size() <= max_triangles && level < deepest_level) continue;

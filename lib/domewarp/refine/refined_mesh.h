@@ -22,16 +22,21 @@ struct RefinedEdge {
   float error = 0, depth_error = 0;
   float second = -1;             ///< until it is decided: EdgeBend::second with the other in depth_error, where known
   float middle_error = -1;       ///< see EdgeDecision
+  float excess = 0;              ///< see EdgeDecision
   float arch = 0;                ///< see EdgeDecision
   bool certified = true;         ///< see EdgeDecision
   bool slides = false;           ///< see EdgeDecision
   bool inner = false;            ///< inside one face of the source
+  bool wanted = false;           ///< it must be split but is not yet; `child` is then its place among those (LevelState::wanted)
+  std::uint8_t waited = 0;       ///< levels that it has been so
+  bool swapped = false;          ///< it took the place of another edge
 };
 
 struct RefinedFace {
   Triangle point, wedge, edge;   ///< edge[k] joins corners k and k + 1
   std::uint32_t source = 0;      ///< index into Soup::faces
   std::uint8_t insertions = 0;   ///< how many centroids were inserted on the way to it
+  bool is_new = true;            ///< made since the last look for other edges
 };
 
 /// A face of the soup that is drawn as it is and has no edges in the refined mesh.
