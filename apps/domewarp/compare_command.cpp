@@ -130,8 +130,7 @@ bool is_kept(const Arguments& arguments, const CompareReport& report) {
 CompareOptions compare_options(const Record& record, const Frame& warped) {
   CompareOptions options;
   options.bound_px = bound_px(record, warped);
-  // Each of two surfaces may be off by it along edges, by 4/3 of it inside triangles; the rest is rounding.
-  options.depth_bound = 8.0 / 3 * record.depth_error + 1e-6;
+  options.depth_bound = 2 * record.depth_error + 1e-6; // each of two surfaces may be off by it; the rest is rounding
   return options;
 }
 

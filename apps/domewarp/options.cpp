@@ -190,7 +190,7 @@ void add_quality_options(CLI::App& app, RefineOptions& refine) {
       [&refine](const std::string& text) { refine.texture_tolerance_px = parse_positive("--texture-tolerance", text); });
   add(*group, "--plain-tolerance", "The same inside faces of one colour and one normal, where nobody sees it (default: --texture-tolerance)", "PX",
       [&refine](const std::string& text) { refine.plain_tolerance_px = parse_positive("--plain-tolerance", text); });
-  add(*group, "--depth-tolerance", "Largest relative error of the depth (default 0.002)", "REL",
+  add(*group, "--depth-tolerance", "Largest relative error of the depth, of edges and faces (default 0.0025)", "REL",
       [&refine](const std::string& text) { refine.depth_tolerance = parse_positive("--depth-tolerance", text); });
   add(*group, "--near", "Nothing nearer to the eye is drawn (default: 1e-5 of the scene's extent)", "D",
       [&refine](const std::string& text) { refine.near = parse_positive("--near", text); });

@@ -6,7 +6,7 @@
 #   pinholes       are none, but for the rule below,
 #   mismatches     (a surface that is hidden everywhere within the bound) are none, likewise,
 #   overlaps       are none,
-#   depth          is off by at most 4/3 of --depth-tolerance (edges are certified to it; a triangle's middle sags by 4/3 of that).
+#   depth          is off by at most --depth-tolerance.
 # The rule "meeting outlines": every connected piece of surface in the pixel ends within the bound, and pieces are connected
 # when they share a vertex by its bits. The outlines of such pieces move on their own, so what lies behind may show
 # where two meet. Every such pixel is counted by `compare` with exact rays, and printed here. The bundled scenes must have no
@@ -42,7 +42,7 @@ misses() {
   [ "$(figure pinholes "$1")" = "$([ "$2" = yes ] && figure pinholes_at_seams "$1" || echo 0)" ] || echo pinholes
   [ "$(figure surface_mismatch "$1")" = "$(figure surface_mismatch_at_seams "$1")" ] || echo mismatches
   [ "$(figure overlaps "$1")" = 0 ] || echo overlaps
-  exceeds "$(figure depth_rel.max "$1")" 0.002668 && echo depth
+  exceeds "$(figure depth_rel.max "$1")" 0.002501 && echo depth
 }
 
 row="%-26s %-28s %9s %8s %8s %8s %8s %5s %9s %5s %8s %7s\n"

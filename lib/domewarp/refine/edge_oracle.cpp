@@ -24,6 +24,7 @@ constexpr double hopeless = 64;        ///< an edge whose eighths still have thi
 constexpr double least_left = 0.25;    ///< of what a bound leaves open, where pieces half as long are hardly ever better
 constexpr double spare = 1.1;          ///< by how much more than the middle's deviation the greatest one is taken to be
 constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
+constexpr double slide_depth_share = 0.6; ///< the same of the depth, of which faces take a third more than their sides
 constexpr double slide_share = 0.7;    ///< of its tolerances that a sliding edge may take up: the faces beside it need more
 constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
@@ -242,7 +243,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
     if (decision.error <= options_.tolerance && decision.depth_error <= options_.depth_tolerance) return true;
     if (inside == nullptr || decision.error > slide_share * inside->tolerance) return false;
     decision.slide_depth = rounded_up(total_depth(decision.error, decision.depth_error));
-    return decision.slides = decision.slide_depth <= slide_share * options_.depth_tolerance;
+    return decision.slides = decision.slide_depth <= slide_depth_share * options_.face_depth_tolerance;
   };
   decision.error = rounded_up(peak_error(0, 0, whole.second, from.weight, to.weight));
   decision.depth_error = rounded_up(whole.depth);
@@ -265,7 +266,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   decision.middle = rounded_up(off);
   if (off > options_.tolerance || middle.depth_off > options_.depth_tolerance) {
     const double excess = inside == nullptr ? std::max(off / options_.tolerance, middle.depth_off / options_.depth_tolerance)
-                                            : std::max(off / inside->tolerance, total_depth(off, middle.depth_off) / options_.depth_tolerance) / slide_share;
+                                            : std::max(off / (slide_share * inside->tolerance), total_depth(off, middle.depth_off) / (slide_depth_share * options_.face_depth_tolerance));
     if (excess > 1) {
       decision.excess = static_cast<float>(excess);
       decision.split = share_out(a, b, middle, excess, decision.evaluations);

@@ -138,7 +138,7 @@ public:
   bool is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const;
 
   /// Whether a face inside one of the source is within what holds there, its depth where its points slide to included.
-  bool may_slide(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, const InnerPlane& inside, FaceJudgement& judgement) const;
+  bool may_slide(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, const InnerPlane& inside, int depth, FaceJudgement& judgement) const;
 
   /// See ErrorBound. No edge within a figure whose second / (8 weight_low) and depth are within the tolerances is split for its error.
   EdgeBend short_segments(const ShortSegments& segments) const { return bound_.short_segments(segments); }
@@ -162,11 +162,16 @@ public:
   const OracleOptions& options() const { return options_; }
 
 private:
+  struct FaceLimits {
+    double error, depth_error; ///< image units; relative
+  };
+
   /// What is known of the parts of a face.
   struct FaceParts {
     Vec3 seconds;           ///< bound the second derivatives along the sides and the segments parallel to them
     int depth = 1;          ///< each is judged in 4^(depth - 1) parts at most
     bool has_depth = false; ///< whether the depth of the whole face is known to be good
+    FaceLimits limits;
   };
 
   /// A face with its corners in canonical order and what bounds all of it.
@@ -176,6 +181,7 @@ private:
     Vec3 second;                   ///< FaceBend::second
     double error, depth_error;     ///< image units; relative
   };
+  bool is_within(const SortedFace& face, const FaceLimits& limits, int depth, FaceJudgement& judgement) const;
   SortedFace bound_of(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side) const;
 
   /// Bounds of what is drawn between two points: of the second derivative along, of the error, of the depth's.

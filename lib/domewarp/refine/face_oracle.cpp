@@ -61,10 +61,13 @@ EdgeOracle::SortedFace EdgeOracle::bound_of(const std::array<const MappedPoint*,
 }
 
 bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, int depth, FaceJudgement& judgement) const {
-  const SortedFace face = bound_of(corner, side);
-  const bool has_depth = face.depth_error <= options_.face_depth_tolerance;
+  return is_within(bound_of(corner, side), {options_.face_tolerance, options_.face_depth_tolerance}, depth, judgement);
+}
+
+bool EdgeOracle::is_within(const SortedFace& face, const FaceLimits& limits, int depth, FaceJudgement& judgement) const {
+  const bool has_depth = face.depth_error <= limits.depth_error;
   if (has_depth) judgement.depth_error = std::max(judgement.depth_error, face.depth_error);
-  if (has_depth && face.error <= options_.face_tolerance) return true;
+  if (has_depth && face.error <= limits.error) return true;
 
   std::array<DrawnPoint, 3> drawn_corner, middle;
   for (int i = 0; i < 3; ++i) drawn_corner[i] = drawn(*face.corner[i]);
@@ -76,7 +79,7 @@ bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const 
     if (is_known) middle[i].depth_off = face.side[i].depth;
     judgement.evaluations += !is_known;
   }
-  return are_parts_good(drawn_corner, middle, {0.25 * face.second, depth, has_depth}, judgement);
+  return are_parts_good(drawn_corner, middle, {0.25 * face.second, depth, has_depth, limits}, judgement);
 }
 
 // What the middles of the sides are off by is known; the bounds of the four parts cover the rest. Side k of each part is
@@ -84,7 +87,7 @@ bool EdgeOracle::is_good(const std::array<const MappedPoint*, 3>& corner, const 
 bool EdgeOracle::are_parts_good(const std::array<DrawnPoint, 3>& corner, const std::array<DrawnPoint, 3>& middle, const FaceParts& parts,
                                 FaceJudgement& judgement) const {
   for (const DrawnPoint& m : middle)
-    if (m.off > options_.face_tolerance * m.weight || (!parts.has_depth && m.depth_off > options_.face_depth_tolerance)) return false;
+    if (m.off > parts.limits.error * m.weight || (!parts.has_depth && m.depth_off > parts.limits.depth_error)) return false;
   if (!is_part_good({middle[1], middle[2], middle[0]}, parts, judgement)) return false;
   for (int k = 0; k < 3; ++k) {
     std::array<DrawnPoint, 3> part;
@@ -101,12 +104,12 @@ bool EdgeOracle::is_part_good(const std::array<DrawnPoint, 3>& corner, FaceParts
   const Vec3 weights(corner[0].weight, corner[1].weight, corner[2].weight);
   const double least = lowest_of(weights);
   const Vec3 at = Vec3(corner[0].off, corner[1].off, corner[2].off) / least;
-  const auto is_enough = [&](const Vec3& bounds) { return peak_face(at, bounds / (8 * least)) <= options_.face_tolerance; };
+  const auto is_enough = [&](const Vec3& bounds) { return peak_face(at, bounds / (8 * least)) <= parts.limits.error; };
   if (parts.has_depth && is_enough(parts.seconds)) return true;
   const FaceBend bend = bound_.face({&corner[0], &corner[1], &corner[2]}, weights, !parts.has_depth);
   if (!parts.has_depth) {
     const double depth_error = peak_depth(Vec3(corner[0].depth_off, corner[1].depth_off, corner[2].depth_off), bend.depth);
-    parts.has_depth = depth_error <= options_.face_depth_tolerance;
+    parts.has_depth = depth_error <= parts.limits.depth_error;
     if (parts.has_depth) judgement.depth_error = std::max(judgement.depth_error, depth_error);
   }
   const Vec3 own = glm::min(parts.seconds, bend.second);
@@ -122,7 +125,7 @@ bool EdgeOracle::is_part_good(const std::array<DrawnPoint, 3>& corner, FaceParts
   std::array<DrawnPoint, 3> middle;
   for (int i = 0; i < 3; ++i) middle[i] = between(corner[i], corner[(i + 1) % 3]);
   judgement.evaluations += 3;
-  return are_parts_good(corner, middle, {0.25 * own, parts.depth - 1, parts.has_depth}, judgement);
+  return are_parts_good(corner, middle, {0.25 * own, parts.depth - 1, parts.has_depth, parts.limits}, judgement);
 }
 
 double EdgeOracle::interior_error(const MappedPoint& a, const MappedPoint& b, const MappedPoint& c, const Vec3& weights) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -34,14 +35,18 @@ double EdgeOracle::slid_depth(const Range& span, double farthest, double error, 
   return (1 + depth_error) * (1 + bound_.slide_depth(span, farthest, inside.distance, error)) - 1;
 }
 
-bool EdgeOracle::may_slide(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, const InnerPlane& inside, FaceJudgement& judgement) const {
+bool EdgeOracle::may_slide(const std::array<const MappedPoint*, 3>& corner, const std::array<SideBound, 3>& side, const InnerPlane& inside, int depth,
+                           FaceJudgement& judgement) const {
   const SortedFace face = bound_of(corner, side);
   if (face.error > inside.tolerance) return false;
   const Range span = bound_.face_span(*face.corner[0], *face.corner[1], *face.corner[2]);
   const double farthest = std::max({corner[0]->rho, corner[1]->rho, corner[2]->rho});
-  const double depth_error = slid_depth(span, farthest, face.error, face.depth_error, inside);
-  if (!(depth_error <= options_.face_depth_tolerance)) return false;
-  judgement.depth_error = std::max(judgement.depth_error, depth_error);
+  const double slide = bound_.slide_depth(span, farthest, inside.distance, face.error);
+  const double allowed = (1 + options_.face_depth_tolerance) / (1 + slide) - 1;
+  FaceJudgement interpolated;
+  if (!(allowed > 0) || !is_within(face, {std::numeric_limits<double>::infinity(), allowed}, depth, interpolated)) return false;
+  judgement.evaluations += interpolated.evaluations;
+  judgement.depth_error = std::max(judgement.depth_error, (1 + interpolated.depth_error) * (1 + slide) - 1);
   return true;
 }
 

@@ -179,7 +179,7 @@ private:
     if (oracle_.is_good({&a, &b, &c}, side, first_depth + face.insertions, block_.judgement)) return std::nullopt;
     block_.judgement.depth_error = depth_before; // what is not kept is not counted
     const std::optional<InnerPlane> inside = inner_plane(state_, face.source);
-    if (inside && oracle_.may_slide({&a, &b, &c}, side, *inside, block_.judgement)) return std::nullopt;
+    if (inside && oracle_.may_slide({&a, &b, &c}, side, *inside, first_depth + face.insertions, block_.judgement)) return std::nullopt;
     const bool is_hopeless = !certified || face.insertions >= most_insertions;
     const double tolerance = inside ? inside->tolerance : oracle_.options().tolerance;
     if (!is_hopeless || !oracle_.looks_good(a, b, c, tolerance, block_.judgement)) {

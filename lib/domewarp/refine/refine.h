@@ -40,7 +40,7 @@ struct RefineOptions {
   double tolerance_px = 0.5;         ///< largest displacement of any drawn point, pixels of the raster, > 0
   double texture_tolerance_px = 0;   ///< the same inside faces, where only what they show can slide, pixels; at least tolerance_px, 0: that
   double plain_tolerance_px = 0;     ///< the same inside plain faces (plain_faces.h), where that cannot be seen; at least both above, 0: the one above
-  double depth_tolerance = 0.002;    ///< largest relative error of the interpolated depth, > 0: 1 % put a train's wheels behind its rails
+  double depth_tolerance = 0.0025;   ///< largest relative error of the interpolated depth, > 0: 1 % put a train's wheels behind its rails
   Projection projection = Projection::perspective;
   double near = 0;                   ///< nothing nearer to the eye is drawn; 0: 1e-5 of the scene's extent
   std::size_t max_triangles = 50'000'000; ///< refinement stops here and says so
