@@ -51,7 +51,7 @@ public:
     report_.exact_provenance = provenance_.exact;
     report_.source_known = source != nullptr;
     if (provenance_.exact) find_torn();
-    std::vector<Ends> open = use_edges(weld_triangles(drawn_.triangles, first_drawn_)).open;
+    std::vector<Ends> open = use_edges(joined_triangles()).open;
     std::erase_if(open, [&](const Ends& edge) { return is_off_picture(edge); });
     find_t_junctions(open);
     std::erase_if(open, [&](const Ends& edge) { return is_rim(edge); });
@@ -63,6 +63,13 @@ public:
 private:
   Vec2 pixel(std::uint32_t v) const { return drawn_at(drawn_.position[v], perspective_) * pixels_per_unit_; }
   const Vec3& source(std::uint32_t v) const { return provenance_.source[v]; }
+
+  /// With those that rounding has collapsed to a line: their neighbours meet there.
+  std::vector<Corners> joined_triangles() const {
+    std::vector<Corners> joined;
+    for (const Corners& t : drawn_.triangles) joined.push_back({first_drawn_[t[0]], first_drawn_[t[1]], first_drawn_[t[2]]});
+    return joined;
+  }
 
   void find_torn() {
     std::size_t distinct = 0;

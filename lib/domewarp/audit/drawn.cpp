@@ -107,7 +107,8 @@ std::vector<Corners> weld_triangles(const std::vector<Corners>& triangles, const
 EdgeUse use_edges(const std::vector<Corners>& triangles) {
   std::vector<Ends> edges;
   for (const Corners& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+    for (std::size_t k = 0; k < 3; ++k)
+      if (t[k] != t[(k + 1) % 3]) edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
   std::sort(edges.begin(), edges.end());
   EdgeUse use;
   for (auto it = edges.begin(); it != edges.end();) {

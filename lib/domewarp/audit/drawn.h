@@ -40,7 +40,8 @@ std::vector<std::uint32_t> first_equal(const std::vector<Vec3>& positions, const
 /// Triangles of first_equal indices, without those that have two equal corners.
 std::vector<Corners> weld_triangles(const std::vector<Corners>& triangles, const std::vector<std::uint32_t>& first);
 
-/// Edges of welded triangles, by how many triangles are on them.
+/// Edges of welded triangles, by how many triangles are on them. A triangle of which two corners are one is on its only edge
+/// twice: what its third side bounded is closed.
 struct EdgeUse {
   std::vector<Ends> open;
   std::size_t non_manifold = 0;

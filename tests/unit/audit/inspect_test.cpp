@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "domewarp/audit/drawn.h"
 #include "domewarp/audit/inspect.h"
 
 namespace domewarp {
@@ -29,6 +30,12 @@ TEST(Inspect, AClosedMeshHasNoOpenEdge) {
 
 TEST(Inspect, AMissingTriangleOpensThreeEdges) {
   EXPECT_EQ(inspect(scene_of(corners, {0, 2, 1, 0, 1, 3, 1, 2, 3})).open_edges, 3u);
+}
+
+TEST(Inspect, ACollapsedTriangleClosesTheEdgeBesideIt) {
+  EXPECT_EQ(use_edges({{0, 1, 2}}).open.size(), 3u);
+  EXPECT_EQ(use_edges({{0, 1, 2}, {1, 1, 2}}).open, (std::vector<Ends>{{0, 1}, {0, 2}}));
+  EXPECT_EQ(use_edges({{3, 3, 3}}).open.size(), 0u);
 }
 
 TEST(Inspect, CountsDuplicateDegenerateAndNonManifold) {
