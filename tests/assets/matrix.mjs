@@ -34,11 +34,6 @@ if (!fs.existsSync(path.join(assets, 'manifest.json'))) {
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'domewarp-matrix-'));
 process.on('exit', () => fs.rmSync(work, { recursive: true, force: true }));
 
-/** Shortcomings that are known: the problem, and why it is there. One that does not show any more fails too. */
-const known = new Map([
-  ['scenes/tree/scene.gltf', { problem: /^\d+ pinholes$/, why: 'leaves cut out by alpha: a texel on the rim of a leaf falls on either side of the threshold' }],
-]);
-
 const tolerance = 0.5;
 const subpixel = 1 / 256; // where the rasteriser snaps vertices to
 
@@ -171,14 +166,6 @@ async function worker() {
   }
 }
 await Promise.all(Array.from({ length: Number(options.jobs) }, worker));
-
-for (const [file, { problem, why }] of known) {
-  const row = rows.find((candidate) => candidate.file === file);
-  if (!row) continue;
-  const rest = row.problems.filter((text) => !problem.test(text));
-  if (rest.length === row.problems.length) row.problems.push('no longer has its known problem');
-  else { row.problems = rest; row.verdict = `known: ${why}`; console.log(`KNOWN ${file}: ${why}`); }
-}
 
 const number = (value, digits) => (value === undefined || value === null ? '' : Number(value).toFixed(digits));
 const lines = ['| file | exit | triangles | validator errors | displacement px | pinholes | remarks |', '|---|---|---|---|---|---|---|'];

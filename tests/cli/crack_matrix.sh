@@ -21,7 +21,7 @@ fi
 
 count() { grep -o "\"$1\": *[0-9]*" "$work/audit.json" | tail -1 | grep -o '[0-9]*$'; }
 
-runs=0 unsound=0 triangles=0 samples=0 failed=0 turned=0
+runs=0 unsound=0 triangles=0 samples=0 failed=0 turned=0 coarse=0
 declare -A sums
 for scene in "${scenes[@]}"; do
   for surface in "${surfaces[@]}"; do
@@ -30,7 +30,10 @@ for scene in "${scenes[@]}"; do
         # shellcheck disable=SC2086 # options of several words
         "$domewarp" convert "$scene" -o "$work/warped.glb" $surface --tolerance "$tolerance" --source-attributes $packing --quiet 2>"$work/said"
         status=$?
-        if [ $status != 0 ]; then
+        # A packed file that says how far rounding moves points has kept its promise and is judged like any other.
+        if [ $status = 3 ] && [ -n "$packing" ] && grep -q 'rounding in the file moves points' "$work/said"; then
+          coarse=$((coarse + 1))
+        elif [ $status != 0 ]; then
           failed=$((failed + 1))
           echo "convert exits with $status: $(basename "$scene") $surface $tolerance $packing: $(head -c 200 "$work/said")"
         fi
@@ -63,6 +66,7 @@ done
 echo "$runs files, $triangles triangles, $samples samples, $unsound not sound, $failed conversions stopped:"
 for name in torn_positions open_edges t_junctions_out flips lost overlapping; do echo "  $name ${sums[$name]:-0}"; done
 echo "  of the flips by --quantize $turned"
+echo "  packed coarser than the tolerance, as their reports say $coarse"
 
 # Negative control: the thesis' scheme must fail here.
 "$domewarp" convert "$root/data/cubes.glb" -o "$work/cracked.glb" --curve '1-r^2' --subdivide isotropic --source-attributes --quiet
