@@ -104,13 +104,13 @@ Outline folds(double half_length, double half_width, int count, double thickness
   }
   Outline outline;
   for (int i = 0; i <= count; ++i) {
-    const auto k = static_cast<std::size_t>(2 * i);
+    const auto k = 2 * static_cast<std::size_t>(i);
     const Outline& side = i % 2 ? back : there;
     outline.push_back(side[k]);
     outline.push_back(side[k + 1]);
   }
   for (int i = count; i >= 0; --i) {
-    const auto k = static_cast<std::size_t>(2 * i);
+    const auto k = 2 * static_cast<std::size_t>(i);
     const Outline& side = i % 2 ? there : back;
     outline.push_back(side[k + 1]);
     outline.push_back(side[k]);

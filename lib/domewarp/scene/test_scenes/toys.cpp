@@ -134,7 +134,7 @@ void add_train(Scene& scene) {
     const std::string name = "wagon " + std::to_string(i + 1);
     const int walls = add_plain(scene, name, colors[static_cast<std::size_t>(i)], 0.5);
     const int load =
-        add_plain(scene, "load " + std::to_string(i + 1), rainbow[static_cast<std::size_t>(2 * i + 1)], 0.8);
+        add_plain(scene, "load " + std::to_string(i + 1), rainbow[2 * static_cast<std::size_t>(i) + 1], 0.8);
     const double degrees = 51 + 21.0 * i;
     add_object(scene, name, wagon(dark, walls, load), on_track(degrees));
     add_wheels(scene, name + " wheel", wheel_mesh, degrees, {-0.28, 0.28});
