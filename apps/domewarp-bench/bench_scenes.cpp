@@ -5,8 +5,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
+
+#include "domewarp/core/errors.h"
+#include "domewarp/scene/test_scenes.h"
 
 namespace domewarp::bench {
 
@@ -37,6 +41,12 @@ Scene cave(std::size_t triangles) {
   scene.instances.push_back({"cave", 0, Mat4(1)});
   scene.materials.emplace_back();
   return scene;
+}
+
+Scene bundled(const std::string& name) {
+  for (TestScene& test : make_test_scenes())
+    if (test.name == name) return std::move(test.scene);
+  throw Error(ErrorCode::usage, "there is no bundled scene '" + name + "'");
 }
 
 Scene box() {

@@ -11,7 +11,6 @@
 #include "child_process.h"
 #include "domewarp/convert/job.h"
 #include "domewarp/core/errors.h"
-#include "domewarp/scene/test_scenes.h"
 #include "timing.h"
 
 namespace domewarp::bench {
@@ -65,8 +64,7 @@ void measure_errors(const Options& options, Result& result) {
   const Folder folder;
   const fs::path input = folder.path / "toys.glb", output = folder.path / "out.glb";
   in_child([&] {
-    for (const TestScene& test : make_test_scenes())
-      if (test.name == "toys") write_scene(test.scene, input);
+    write_scene(bundled("toys"), input);
     return Told{};
   });
   double first = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_growth.h"
 
+#include "bench_scenes.h"
 #include "child_process.h"
 #include "domewarp/convert/convert.h"
 #include "domewarp/render/rasterise.h"
 #include "domewarp/render/ray_trace.h"
 #include "domewarp/scene/raster.h"
-#include "domewarp/scene/test_scenes.h"
 #include "timing.h"
 
 namespace domewarp::bench {
@@ -18,12 +18,6 @@ struct Told {
   std::size_t bands = 0;
 };
 
-Scene toys() {
-  for (TestScene& test : make_test_scenes())
-    if (test.name == "toys") return std::move(test.scene);
-  return {};
-}
-
 SurfaceOptions dome() {
   SurfaceOptions options;
   options.curve = "1-r^2";
@@ -31,7 +25,7 @@ SurfaceOptions dome() {
 }
 
 Told trace(const Raster& raster) {
-  const Scene scene = toys();
+  const Scene scene = bundled("toys");
   const Surface surface(dome(), screen_radius(raster));
   Told told;
   told.seconds = seconds([&] {
@@ -46,7 +40,7 @@ Told draw(const Raster& raster) {
   options.raster = raster;
   options.refine.source_attributes = true;
   ConvertReport report;
-  const Scene warped = convert(toys(), options, report);
+  const Scene warped = convert(bundled("toys"), options, report);
   Told told;
   told.seconds = seconds([&] { rasterise(warped, raster, {}, [&](const Frame&, int) { ++told.bands; }); });
   return told;

@@ -127,9 +127,7 @@ void add_convert_command(CLI::App& app, int& status) {
   command->add_option_function<std::string>("--max-memory", [arguments](const std::string& text) {
            arguments->max_memory = parse_memory("--max-memory", text);
          }, "Refuse a scene that needs more memory, exit status 3")->type_name("MIB");
-  command->add_option_function<std::string>("--threads", [arguments](const std::string& text) {
-           arguments->threads = static_cast<int>(std::min<std::size_t>(parse_count("--threads", text), 1024));
-         }, "Threads to use (default: all)")->type_name("N");
+  add_threads_option(*command, arguments->threads);
   command->add_flag("--json", arguments->json, "Print the report as JSON");
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->callback([arguments, command, &status] {

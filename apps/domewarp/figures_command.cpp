@@ -74,7 +74,7 @@ void add_figures_command(CLI::App& app, int& status) {
     arguments->studio.samples = static_cast<int>(std::min<std::size_t>(parse_count("--samples", text), 1 << 20)); },
     "Rays in pixels with contrast or an outline (default 32)")->type_name("N");
   command->add_flag("--quick", arguments->quick, "Small pictures, to see that all can be made");
-  command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
+  add_threads_option(*command, arguments->threads);
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -13,16 +13,6 @@ namespace domewarp {
 
 namespace {
 
-/// Options of an app and of its groups.
-std::vector<const CLI::Option*> all_options(const CLI::App& app) {
-  std::vector<const CLI::Option*> options = app.get_options();
-  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
-    const std::vector<const CLI::Option*> more = all_options(*group);
-    options.insert(options.end(), more.begin(), more.end());
-  }
-  return options;
-}
-
 const CLI::Option* find_option(const CLI::App& app, const std::string& name) {
   for (const CLI::Option* option : all_options(app))
     if (option->check_lname(name)) return option;

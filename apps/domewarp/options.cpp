@@ -90,6 +90,20 @@ CLI::Option* add_choice(CLI::App& app, const char* name, const std::string& help
 
 } // namespace
 
+std::vector<const CLI::Option*> all_options(const CLI::App& app) {
+  std::vector<const CLI::Option*> options = app.get_options();
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
+    const std::vector<const CLI::Option*> more = all_options(*group);
+    options.insert(options.end(), more.begin(), more.end());
+  }
+  return options;
+}
+
+void add_threads_option(CLI::App& app, int& threads) {
+  add(app, "--threads", "Threads to use (default: all)", "N",
+      [&threads](const std::string& text) { threads = static_cast<int>(std::min<std::size_t>(parse_count("--threads", text), 1024)); });
+}
+
 void add_read_options(CLI::App& app, ReadOptions& read) {
   app.add_option("--scene", read.scene, "Scene of the file to read (default: the file's)")->type_name("NAME|INDEX");
   add_pose_options(app, read);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "domewarp/convert/job.h"
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace domewarp {
@@ -40,6 +42,11 @@ void add_bake_options(CLI::App& app, BakeOptions& bake);
 
 /// All options of a conversion from file to file: those of `convert`, of `batch` and of a manifest.
 void add_job_options(CLI::App& app, JobOptions& job);
+
+void add_threads_option(CLI::App& app, int& threads); ///< 0: all
+
+/// Options of an app and of its groups.
+std::vector<const CLI::Option*> all_options(const CLI::App& app);
 
 /// @throws Error(usage) unless exactly one of --curve, --lens and --profile was given
 void require_surface(const SurfaceOptions& surface);

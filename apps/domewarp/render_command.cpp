@@ -191,7 +191,7 @@ void add_render_command(CLI::App& app, int& status) {
   command->add_flag("--shadows", arguments->shadows, "Let opaque surfaces keep those lights away");
   command->add_option_function<std::string>("--exposure", [arguments](const std::string& text) {
     arguments->exposure = parse_number("--exposure", text); }, "Brighten those lights by so many stops (default 0)")->type_name("STOPS");
-  command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
+  add_threads_option(*command, arguments->threads);
   command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
   command->callback([arguments, command, &status] {
     arguments->size_given = command->count("--size") > 0;

@@ -167,7 +167,7 @@ void add_simulate_command(CLI::App& app, int& status) {
   command->add_flag("--unlit", arguments->unlit, "The picture was made with --unlit");
   command->add_flag("--lights", arguments->lights, "The picture was made with --lights");
   command->add_flag("--json", arguments->json, "Print the figures as JSON");
-  command->add_option("--threads", arguments->threads, "Threads to use (default: all)")->check(CLI::NonNegativeNumber);
+  add_threads_option(*command, arguments->threads);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "options.h"
+
 namespace domewarp {
 
 namespace {
@@ -35,12 +37,8 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
+  for (const CLI::Option* option : all_options(app))
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
-    const std::vector<std::string> more = option_names(*group);
-    names.insert(names.end(), more.begin(), more.end());
-  }
   return names;
 }
 

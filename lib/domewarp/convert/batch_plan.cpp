@@ -168,9 +168,10 @@ private:
   std::vector<BatchItem> settle_outputs() {
     std::map<fs::path, int> wanted;
     for (const Wish& wish : wishes_) ++wanted[output_of(wish, false).lexically_normal()];
-    std::map<fs::path, const Wish*> taken, folders, inputs;
+    std::map<fs::path, const Wish*> taken, folders;
+    std::set<fs::path> inputs;
     std::error_code status;
-    for (const Wish& wish : wishes_) inputs.emplace(fs::weakly_canonical(wish.input, status), &wish);
+    for (const Wish& wish : wishes_) inputs.insert(fs::weakly_canonical(wish.input, status));
     std::vector<BatchItem> items;
     for (const Wish& wish : wishes_) {
       const bool alone = wanted[output_of(wish, false).lexically_normal()] == 1;

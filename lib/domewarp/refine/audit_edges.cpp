@@ -60,11 +60,7 @@ private:
     block.widest_gap = std::max(block.widest_gap, 2.0 * edge.error);
   }
 
-  bool is_rim(const RefinedEdge& edge) const {
-    for (std::size_t i = 0; i < oracle_.region().boundaries.size(); ++i)
-      if (refined_.points[edge.a].sides[i] == 0 && refined_.points[edge.b].sides[i] == 0) return true;
-    return false;
-  }
+  bool is_rim(const RefinedEdge& edge) const { return share_boundary(refined_.points[edge.a].sides, refined_.points[edge.b].sides); }
 
   const RefinedMesh& refined_;
   const EdgeOracle& oracle_;

@@ -24,17 +24,10 @@ constexpr double hopeless = 64;        ///< an edge whose eighths still have thi
 constexpr double least_left = 0.25;    ///< of what a bound leaves open, where pieces half as long are hardly ever better
 constexpr double spare = 1.1;          ///< by how much more than the middle's deviation the greatest one is taken to be
 constexpr double most_counted = 64;    ///< pieces; what needs more is far from knowing how many
+constexpr double slide_share = 0.7;    ///< of its tolerance that a sliding edge may take up: the faces beside it need more
 constexpr double slide_depth_share = 0.6; ///< the same of the depth, of which faces take a third more than their sides
-constexpr double slide_share = 0.7;    ///< of its tolerances that a sliding edge may take up: the faces beside it need more
 constexpr double widest_asked = 8;     ///< image units: twice the picture's diagonal, and once more for halves that are not halves in the image
 constexpr double widest_sampled = 0.05; ///< radians; a wider edge could hide something between seven samples
-
-/// Whether both ends are on one boundary.
-bool is_chord(const MappedPoint& a, const MappedPoint& b) {
-  for (std::size_t i = 0; i < a.sides.size(); ++i)
-    if (a.sides[i] == 0 && b.sides[i] == 0) return true;
-  return false;
-}
 
 /// The angle that moves the rim by a tenth of the tolerance.
 double unnoticed_angle(const BranchMap& map, double tolerance) {
@@ -236,7 +229,7 @@ EdgeDecision EdgeOracle::split_by_error(const MappedPoint& a, const MappedPoint&
   const DrawnPoint from = drawn(a), to = drawn(b);
   const EdgeBend whole = context.known != nullptr ? *context.known : bound_.edge(a, b, from.weight, to.weight);
   const double least = std::min(from.weight, to.weight);
-  const InnerPlane* inside = is_chord(a, b) ? nullptr : context.inside; // a chord is outline
+  const InnerPlane* inside = share_boundary(a.sides, b.sides) ? nullptr : context.inside; // a chord is outline
   const Range span = inside != nullptr ? bound_.edge_span(a, b) : Range{};
   const auto total_depth = [&](double error, double depth_error) { return slid_depth(span, std::max(a.rho, b.rho), error, depth_error, *inside); };
   const auto is_good = [&] {

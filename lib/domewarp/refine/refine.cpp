@@ -142,10 +142,6 @@ void refine_isotropic(const Scene& scene, const View& view, const Surface& surfa
   report.emit_ms = watch.lap();
 }
 
-} // namespace
-
-namespace {
-
 /// @param release called once the triangles' positions and indices are no longer needed
 Scene refine_and_release(const Scene& scene, const View& view, const Surface& surface, const ImageMap& map, const Raster& raster,
                          const RefineOptions& options, RefineReport& report, const std::function<void()>& release) {

@@ -105,12 +105,7 @@ private:
     return std::ranges::all_of(corners, [&](std::uint32_t p) { return std::ranges::min(mesh_.points[p].sides) >= 0; });
   }
 
-  bool is_chord(const RefinedEdge& edge) const {
-    const Sides &p = mesh_.points[edge.a].sides, &q = mesh_.points[edge.b].sides;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      if (p[i] == 0 && q[i] == 0) return true;
-    return false;
-  }
+  bool is_chord(const RefinedEdge& edge) const { return share_boundary(mesh_.points[edge.a].sides, mesh_.points[edge.b].sides); }
 
   /// Whether the corners turn like the face of the source, in space and in the image, and are not nearly on a line.
   bool is_upright(std::uint32_t p, std::uint32_t q, std::uint32_t r, const Vec3& normal) const {

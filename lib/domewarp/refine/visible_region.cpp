@@ -21,6 +21,12 @@ VisibleRegion make_visible_region(const Branch& branch, double near) {
   return region;
 }
 
+bool share_boundary(const Sides& p, const Sides& q) {
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p[i] == 0 && q[i] == 0) return true;
+  return false;
+}
+
 double signed_distance(const Boundary& boundary, const Vec3& p) {
   if (boundary.kind == Boundary::Kind::near_sphere) return glm::length(p) - boundary.radius;
   const double beyond = -p.z * boundary.sine - std::hypot(p.x, p.y) * boundary.cosine;

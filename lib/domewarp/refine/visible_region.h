@@ -21,6 +21,9 @@ struct Boundary {
 /// -1 outside, 0 on the boundary, +1 inside; one entry per boundary of the region.
 using Sides = std::array<std::int8_t, 3>;
 
+/// Whether two points lie on one boundary: what joins them is a chord of the rim.
+bool share_boundary(const Sides& p, const Sides& q);
+
 /// The directions and distances that a branch shows: theta_low <= theta <= theta_high, rho >= near.
 struct VisibleRegion {
   std::vector<Boundary> boundaries; ///< at most three, in a fixed order

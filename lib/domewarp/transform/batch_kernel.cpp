@@ -129,6 +129,13 @@ HWY_INLINE V Finer(const V* p, V r, V depth, const HalfAngle& half, V bottom, V 
   return hn::Mul(left, RoughInverse(bottom));
 }
 
+HWY_INLINE void LoadPlanar(const ConstPoints& in, std::size_t i, V* xyz) {
+  const Tag d;
+  xyz[0] = hn::LoadU(d, in.x + i);
+  xyz[1] = hn::LoadU(d, in.y + i);
+  xyz[2] = hn::LoadU(d, in.z + i);
+}
+
 // The first stages: lengths, then where on the table a point is.
 struct Locator {
   Interleaving interleaving;
@@ -146,9 +153,7 @@ struct Locator {
     const Tag d;
     V p[3];
     if (split) {
-      p[0] = hn::LoadU(d, in.x + i);
-      p[1] = hn::LoadU(d, in.y + i);
-      p[2] = hn::LoadU(d, in.z + i);
+      LoadPlanar(in, i, p);
     } else {
       interleaving.Load(in.x + 3 * i, p);
       for (int c = fine ? 0 : 2; c < 3; ++c) place.p[c] = p[c];
@@ -166,9 +171,7 @@ struct Locator {
     const Tag d;
     V p[3];
     if (split) {
-      p[0] = hn::LoadU(d, in.x + i);
-      p[1] = hn::LoadU(d, in.y + i);
-      p[2] = hn::LoadU(d, in.z + i);
+      LoadPlanar(in, i, p);
     } else {
       for (int c = fine ? 0 : 2; c < 3; ++c) p[c] = place.p[c];
     }
